@@ -1,0 +1,17 @@
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <iosfwd>
+#include <string>
+
+namespace carve {
+
+/// Writes a file whole or not at all: `write` fills a temporary file beside `path`, which is then renamed over it.
+/// \throws IoError (side output) if the folder is missing, the disk is full, or `path` is not a regular file;
+///         the temporary file is gone then and what stood at `path` is untouched.
+void write_file(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
+
+/// The whole file. \throws IoError if it is missing, not a regular file, or larger than `limit` bytes.
+std::string read_file(const std::filesystem::path& path, std::uintmax_t limit = std::uintmax_t{1} << 32);
+
+}  // namespace carve

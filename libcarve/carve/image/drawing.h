@@ -1,0 +1,51 @@
+#pragma once
+#include <optional>
+#include <span>
+
+#include "carve/core/raster.h"
+
+namespace carve {
+
+/// How a drawing's background is told from the object.
+enum class Background {
+  automatic,  // the first of alpha, border, flood that fits
+  alpha,      // pixels that are transparent
+  border,     // every pixel of the border's colour, holes included
+  flood       // pixels of the border's colour connected with the border: white-filled line art on white paper
+};
+inline std::span<const char* const> names(Background) {
+  static constexpr const char* all[] = {"auto", "alpha", "border", "flood"};
+  return all;
+}
+
+struct DrawingOptions {
+  Background background = Background::automatic;
+  double tolerance = 12;                  // colour distance to the border's colour that is still background
+  double ink = 64;                        // strokes: every channel at most this
+  std::optional<double> max_stroke = {};  // pixels; automatic: 2 % of the drawing's longer side, at least 3
+};
+template <class Visitor>
+void visit_fields(DrawingOptions& o, Visitor&& field) {
+  field("background", o.background, "how the background is told from the object");
+  field("tolerance", o.tolerance, 0.0, 441.0, "largest RGB distance to the border's colour that is still background");
+  field("ink", o.ink, 0.0, 255.0, "a stroke's largest channel value");
+  field("max_stroke", o.max_stroke, 1.0, 1000.0, "widest black stroke in pixels; wider black areas are surface");
+}
+
+/// A drawing as the stages see it: three labels a pixel (thesis 3.1.1) beside the untouched picture.
+struct Drawing {
+  Picture picture;
+  Raster<Label> labels;
+  Mask coverage;  // share of the pixel that the object covers, 0..255: sub-pixel silhouettes of anti-aliased borders
+  Background background;  // the rule that was used
+  Rgba border;            // the background's colour (alpha 0 under the alpha rule)
+  double max_stroke = 0;  // pixels
+  Box bounds;             // of all pixels that are not background
+};
+
+/// Labels every pixel. Strokes are thin near-black lines; a black area wider than max_stroke is surface, so that an
+/// all-black silhouette is a solid.
+/// \throws std::invalid_argument on an option out of range; NoResult if no pixel, or every pixel, is background
+Drawing understand_drawing(Picture picture, const DrawingOptions& options = {});
+
+}  // namespace carve

@@ -1,0 +1,27 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "carve/core/raster.h"
+
+namespace carve {
+
+/// Longest side of a picture that is read; a file that declares more is refused before anything is allocated.
+inline constexpr int kLargestSide = 16384;
+
+/// Reads PNG, JPEG, TIFF or WebP (by content, not by name): grey, RGB, palette, with or without alpha; 16-bit channels
+/// are rounded to 8. Never resampled; a picture without alpha gets 255. \throws IoError: missing, not an image,
+/// truncated, larger than kLargestSide, empty
+Picture read_image(const std::filesystem::path& path);
+
+/// The same from a file's bytes; `name` is what errors call it.
+Picture decode_image(std::string_view bytes, const std::string& name);
+
+/// Writes a PNG (RGBA, or RGB if every pixel is opaque), whole or not at all. \throws IoError
+void write_png(const std::filesystem::path& path, const Picture& picture);
+
+/// A PNG's bytes, the same on every machine with the same libpng and zlib.
+std::string encode_png(const Picture& picture);
+
+}  // namespace carve

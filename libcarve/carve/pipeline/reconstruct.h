@@ -1,0 +1,47 @@
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+#include "carve/carving/carve_silhouettes.h"
+#include "carve/carving/consistency_report.h"
+#include "carve/core/monitor.h"
+#include "carve/core/options.h"
+#include "carve/mesh/topology.h"
+#include "carve/surface/smooth.h"
+
+namespace carve {
+
+/// Every option of the way from drawings to mesh; each is declared in its stage's header.
+struct PipelineOptions {
+  CarveOptions carve;
+  bool intersections = true;
+  DrawingOptions drawing;
+  AlignOptions align;
+  SmoothOptions smooth;
+};
+
+/// All of them, for flags, TOML and records; the section is empty for carve's own ("grid"), else the stage
+/// ("smooth.steps").
+std::vector<Field> fields(PipelineOptions& options);
+
+struct StageTime {
+  std::string stage;
+  double seconds = 0;
+};
+
+struct Reconstruction {
+  Mesh mesh;       // solid (mesh/topology.h), object units: longest side 1, centred on x and z, standing on y = 0
+  VoxelGrid grid;  // the solid the mesh was made from
+  Topology topology;
+  ViewSet views;
+  std::vector<ViewAgreement> agreement;
+  std::vector<StageTime> times;
+};
+
+/// The whole way: align, carve, surface, smooth.
+/// \throws std::invalid_argument on options or views that cannot work; NoResult if nothing is left
+Reconstruction reconstruct(std::map<View, Drawing> drawings, const PipelineOptions& options = {},
+                           const Monitor& monitor = {});
+
+}  // namespace carve

@@ -1,0 +1,23 @@
+#pragma once
+#include "carve/core/monitor.h"
+#include "carve/mesh/mesh.h"
+
+namespace carve {
+
+struct SmoothOptions {
+  int steps = 2;
+  double level = 180;  // degrees
+};
+template <class Visitor>
+void visit_fields(SmoothOptions& o, Visitor&& field) {
+  field("steps", o.steps, 0, 1000, "Laplacian smoothing steps");
+  field("level", o.level, 0.0, 180.0,
+        "largest angle in degrees between neighbouring triangles' normals that is still smoothed; sharper edges stay");
+}
+
+/// Laplacian smoothing (thesis 3.1.6, Equation 3.7; level: A.1.3.2) \cite bardyn_2010: each step moves every vertex to
+/// the mean of its one-ring, all at once; a vertex on an edge sharper than `level` stays. Topology is kept; zero steps
+/// or level 0 is the identity. \throws std::invalid_argument on an option out of range
+Mesh smooth(Mesh mesh, const SmoothOptions& options = {}, const Monitor& monitor = {});
+
+}  // namespace carve

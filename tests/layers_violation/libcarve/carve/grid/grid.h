@@ -1,0 +1,1 @@
+#include "carve/carving/carve_silhouettes.h"
