@@ -4,8 +4,8 @@
 
 namespace carve {
 
-/// A file that cannot be read or written; what() is "path: why". Programs exit with 2 when it was an input they were
-/// given, with 1 when the machine failed them (see `Side`).
+/// A file that cannot be read or written; what() is "path: why". Programs exit with 2 where what they were given is at
+/// fault (input: an unreadable file, an impossible place), with 1 where the machine failed them (output: a full disk).
 class IoError : public std::runtime_error {
  public:
   enum class Side { input, output };

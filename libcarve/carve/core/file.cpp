@@ -24,9 +24,9 @@ struct Temporary {
   }
 };
 
-[[noreturn]] void fail(const fs::path& path, const std::string& what) {
-  throw IoError(path.string(), what + (errno ? std::string(": ") + std::strerror(errno) : std::string()),
-                IoError::Side::output);
+[[noreturn]] void fail(const fs::path& path, IoError::Side side) {
+  throw IoError(path.string(), std::string("cannot write") + (errno ? std::string(": ") + std::strerror(errno) : ""),
+                side);
 }
 
 }  // namespace
@@ -35,23 +35,23 @@ void write_file(const fs::path& path, const std::function<void(std::ostream&)>& 
   std::error_code error;
   const auto status = fs::status(path, error);
   if (fs::exists(status) && !fs::is_regular_file(status))
-    throw IoError(path.string(), "cannot write: not a regular file", IoError::Side::output);
+    throw IoError(path.string(), "cannot write: not a regular file");
 
   std::string name = (path.parent_path() / ("." + path.filename().string() + ".XXXXXX")).string();
   errno = 0;
   const int descriptor = mkstemp(name.data());
-  if (descriptor < 0) fail(path, "cannot write");
+  if (descriptor < 0) fail(path, IoError::Side::input);
   Temporary temporary{name};
   fchmod(descriptor, 0644);
   close(descriptor);
 
   std::ofstream out(name, std::ios::binary);
-  if (!out) fail(path, "cannot write");
+  if (!out) fail(path, IoError::Side::output);
   out.imbue(std::locale::classic());
   errno = 0;
   write(out);
   out.close();
-  if (!out) fail(path, "cannot write");
+  if (!out) fail(path, IoError::Side::output);
   fs::rename(name, path, error);
   if (error) throw IoError(path.string(), "cannot write: " + error.message(), IoError::Side::output);
   temporary.kept = true;

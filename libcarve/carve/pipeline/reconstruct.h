@@ -1,4 +1,5 @@
 #pragma once
+#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "carve/carving/consistency_report.h"
 #include "carve/core/monitor.h"
 #include "carve/core/options.h"
+#include "carve/image/read_image.h"
 #include "carve/mesh/topology.h"
 #include "carve/surface/smooth.h"
 
@@ -20,6 +22,11 @@ struct PipelineOptions {
   AlignOptions align;
   SmoothOptions smooth;
 };
+
+template <class Visitor>
+void visit_fields(PipelineOptions& o, Visitor&& field) {
+  field("intersections", o.intersections, "vertices at the exact crossing of grid line and drawn contour");
+}
 
 /// All of them, for flags, TOML and records; the section is empty for carve's own ("grid"), else the stage
 /// ("smooth.steps").
@@ -38,6 +45,10 @@ struct Reconstruction {
   std::vector<ViewAgreement> agreement;
   std::vector<StageTime> times;
 };
+
+/// \throws IoError naming the file: unreadable, not an image, nothing but background or nothing but object
+std::map<View, Drawing> read_drawings(const std::map<View, std::filesystem::path>& paths,
+                                      const DrawingOptions& options = {});
 
 /// The whole way: align, carve, surface, smooth.
 /// \throws std::invalid_argument on options or views that cannot work; NoResult if nothing is left

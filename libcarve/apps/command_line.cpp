@@ -1,0 +1,57 @@
+#include "apps/command_line.h"
+
+#include <iostream>
+#include <new>
+
+#include "carve/core/error.h"
+
+namespace carve {
+namespace {
+
+int complain(const CLI::App& app, const char* what, ExitCode code) {
+  std::cerr << app.get_name() << ": " << what << '\n';
+  return code;
+}
+
+}  // namespace
+
+void add_flags(CLI::App& app, std::span<const Field> fields) {
+  for (const Field& field : fields) {
+    std::string flag = "--" + field.name;
+    for (char& c : flag)
+      if (c == '.' || c == '_') c = '-';
+    const auto set = [field, flag](const std::string& text) {
+      try {
+        field.set(text);
+      } catch (const std::invalid_argument& error) {
+        throw CLI::ValidationError(error.what());
+      }
+    };
+    app.add_option_function<std::string>(flag, set, field.help)
+        ->type_name(field.range)
+        ->default_str(field.get())
+        ->group(field.name.find('.') == std::string::npos ? "Options" : field.name.substr(0, field.name.find('.')))
+        ->trigger_on_parse();
+  }
+}
+
+int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& work) {
+  try {
+    app.parse(argc, argv);
+    return work();
+  } catch (const CLI::Success& asked) {  // --help, --version
+    return app.exit(asked);
+  } catch (const CLI::ParseError& error) {
+    return complain(app, (std::string(error.what()) + " (see --help)").c_str(), kBadInput);
+  } catch (const IoError& error) {
+    return complain(app, error.what(), error.side() == IoError::Side::input ? kBadInput : kFailed);
+  } catch (const std::invalid_argument& error) {
+    return complain(app, error.what(), kBadInput);
+  } catch (const std::bad_alloc&) {
+    return complain(app, "not enough memory for this input and these options", kFailed);
+  } catch (const std::exception& error) {
+    return complain(app, error.what(), kFailed);
+  }
+}
+
+}  // namespace carve

@@ -1,0 +1,20 @@
+#pragma once
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <span>
+
+#include "carve/core/options.h"
+
+namespace carve {
+
+/// Exit codes of every program of the project.
+enum ExitCode { kDone = 0, kFailed = 1, kBadInput = 2, kCheckFailed = 3 };
+
+/// One flag a field: "smooth.steps" is --smooth-steps. The fields' structs must outlive the app.
+void add_flags(CLI::App& app, std::span<const Field> fields);
+
+/// Parses, runs, and turns what went wrong into one line on stderr and an exit code: bad usage or input kBadInput, work
+/// that could not be done kFailed. `work` returns the exit code otherwise.
+int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& work);
+
+}  // namespace carve

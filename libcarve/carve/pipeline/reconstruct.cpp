@@ -1,0 +1,77 @@
+#include "carve/pipeline/reconstruct.h"
+
+#include <chrono>
+
+#include "carve/surface/crossings.h"
+#include "carve/surface/marching_cubes.h"
+
+namespace carve {
+namespace {
+
+// Runs a stage, telling the monitor before it and the record after it.
+class Stages {
+ public:
+  Stages(const Monitor& monitor, int count, std::vector<StageTime>& times)
+      : monitor_(monitor), count_(count), times_(times) {}
+
+  template <class Work>
+  auto operator()(const char* stage, Work&& work) {
+    monitor_.at(stage, static_cast<double>(times_.size()) / count_);
+    const auto start = std::chrono::steady_clock::now();
+    auto result = work();
+    times_.push_back({stage, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
+    return result;
+  }
+
+ private:
+  const Monitor& monitor_;
+  int count_;
+  std::vector<StageTime>& times_;
+};
+
+}  // namespace
+
+std::vector<Field> fields(PipelineOptions& options) {
+  std::vector<Field> all;
+  add_fields(all, "", options.carve);
+  add_fields(all, "", options);
+  add_fields(all, "drawing", options.drawing);
+  add_fields(all, "align", options.align);
+  add_fields(all, "smooth", options.smooth);
+  return all;
+}
+
+std::map<View, Drawing> read_drawings(const std::map<View, std::filesystem::path>& paths,
+                                      const DrawingOptions& options) {
+  std::map<View, Drawing> drawings;
+  for (const auto& [view, path] : paths) {
+    Picture picture = read_image(path);
+    try {
+      drawings.emplace(view, understand_drawing(std::move(picture), options));
+    } catch (const NoResult& nothing) {
+      throw IoError(path.string(), nothing.what());
+    }
+  }
+  return drawings;
+}
+
+Reconstruction reconstruct(std::map<View, Drawing> drawings, const PipelineOptions& options, const Monitor& monitor) {
+  PipelineOptions checked = options;
+  for (const Field& field : fields(checked)) field.set(field.get());
+
+  Reconstruction result;
+  Stages stage(monitor, 6, result.times);
+  result.views = stage("align", [&] { return align(std::move(drawings), options.align); });
+  result.grid = stage("carve", [&] { return carve_silhouettes(result.views, options.carve).grid; });
+  const Crossings crossings = stage("intersections", [&] {
+    return options.intersections ? contour_crossings(result.views, result.grid) : Crossings{};
+  });
+  Mesh surface = stage("surface", [&] { return marching_cubes(result.grid, crossings); });
+  result.mesh = stage("smooth", [&] { return smooth(std::move(surface), options.smooth, monitor); });
+  result.topology = stage("check", [&] { return topology(result.mesh); });
+  result.agreement = agreement(result.grid, result.views);
+  monitor.at("done", 1);
+  return result;
+}
+
+}  // namespace carve
