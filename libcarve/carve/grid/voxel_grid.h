@@ -16,8 +16,8 @@ inline constexpr int kLargestGrid = 2048;  // voxels along one axis
 class VoxelGrid {
  public:
   VoxelGrid() = default;
-  /// \param low      world position of the box's lower corner: voxel (x, y, z) has its centre at low + spacing*(x+.5,
-  /// ...) \throws std::invalid_argument if a size is not in [1, kLargestGrid]
+  /// \param low  world position of the box's lower corner: voxel (x, y, z) has its centre at low + spacing * (x+.5,
+  /// ...) \throws std::invalid_argument if a size is not in [1, kLargestGrid], or spacing not positive and finite
   VoxelGrid(Vec3i size, Vec3 low, double spacing, bool fill = false);
 
   const Vec3i& size() const { return size_; }
@@ -55,13 +55,13 @@ class VoxelGrid {
 };
 
 /// An empty grid with `resolution` voxels along the longest side of a box, centred on it; each axis gets as many whole
-/// voxels as cover it.
+/// voxels as cover it. \throws std::invalid_argument: resolution not in [1, kLargestGrid], or an empty box
 VoxelGrid grid_over(const Vec3& low, const Vec3& high, int resolution);
 
-/// Every voxel of `inner` is one of `outer`. The grids must have one size.
+/// Every voxel of `inner` is one of `outer`. \throws std::invalid_argument if the grids' sizes differ
 bool contains(const VoxelGrid& outer, const VoxelGrid& inner);
 
-/// Volume of the intersection over volume of the union; 1 if both are empty.
+/// Volume of the intersection over volume of the union; 1 if both are empty. \throws as contains
 double intersection_over_union(const VoxelGrid& a, const VoxelGrid& b);
 
 }  // namespace carve

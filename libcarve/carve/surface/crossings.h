@@ -1,28 +1,28 @@
 #pragma once
-#include <vector>
-
 #include "carve/core/raster.h"
 #include "carve/grid/voxel_grid.h"
 #include "carve/views/view_set.h"
 
 namespace carve {
 
-/// Where the drawn contours cross the grid edges of one view: per grid pixel, laid out as in grid/shadow.h, the
-/// distance from the pixel's centre to the contour, in voxels in (0, 1), towards each of its four neighbours. Read only
-/// where the pixel is inside and that neighbour is outside.
-struct ViewCrossings {
-  View view;
-  Raster<float> right, left, up, down;
+/// Where the drawn contours cross the grid lines of one coordinate plane, by voxel index. Entry (i, j) of `first` lies
+/// on the line along the plane's first axis between the centres (i - 1, j) and (i, j), entry (i, j) of `second` along
+/// its second axis between (i, j - 1) and (i, j); the outermost entries reach half out of the grid. The value is the
+/// distance from the drawn object's side to the contour, in voxels in (0, 1): positive if the lower centre lies in the
+/// object and the upper one outside, negative if it is the other way round, 0 if the views see no contour there.
+struct PlaneCrossings {
+  Raster<float> first, second;
 };
 
-/// Empty: all crossings are in the middle.
+/// One plane for front and back (xy), top and bottom (xz), side and left (yz). Empty planes see no contour.
 struct Crossings {
-  std::vector<ViewCrossings> views;
+  PlaneCrossings xy, xz, yz;
 };
 
 /// Marching intersections (thesis 3.1.4) \cite rocchini_2001: the exact crossing of each grid line with the drawn
-/// contour, sub-pixel where the drawing's border is anti-aliased. A grid edge's vertex lies at the nearest of its
-/// views' crossings.
+/// contour = the 50 % level of the drawing's coverage, interpolated linearly between the pixels along the grid line;
+/// the first one seen from the inside centre. Kept off the centres by 0.02 voxels, so that no triangle degenerates.
+/// Inside is taken at the voxels' centres: grids carved with Patch::any have surfaces beyond these contours.
 Crossings contour_crossings(const ViewSet& views, const VoxelGrid& grid);
 
 }  // namespace carve

@@ -15,6 +15,7 @@ struct AlignedView {
   Drawing drawing;
   /// Continuous pixel coordinates (pixel (i, j) covers [i, i+1) x [j, j+1)) of object coordinate a along the view's
   /// right axis and b along its up axis: column = column0 + column_per_unit * a, row = row0 + row_per_unit * b.
+  /// The signs are the frame's; a flipped drawing has the sign of column_per_unit reversed, its pixels stay as drawn.
   double column0 = 0, column_per_unit = 1, row0 = 0, row_per_unit = -1;
 
   double column(double a) const { return column0 + column_per_unit * a; }
@@ -43,8 +44,9 @@ void visit_fields(AlignOptions& o, Visitor&& field) {
 }
 
 /// Scales the drawings so that their bounding boxes agree along shared axes (thesis 3.1.1): the object's proportions
-/// are the least-squares fit of all drawings' proportions, and each drawing's box is stretched onto them. \throws
-/// std::invalid_argument: fewer than two drawings, two of one name, or none that shows one of the three axes
+/// are the least-squares fit (of logarithms) of all drawings' proportions, and each drawing's box is stretched onto
+/// them. \throws std::invalid_argument: an axis that no drawing shows (so fewer than two drawings), two drawings of one
+/// name, a flip of no view; NoResult if a drawing is empty
 ViewSet align(std::map<View, Drawing> drawings, const AlignOptions& options = {});
 
 }  // namespace carve

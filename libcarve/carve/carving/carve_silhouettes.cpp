@@ -1,0 +1,100 @@
+#include "carve/carving/carve_silhouettes.h"
+
+#include <atomic>
+
+#include "carve/core/error.h"
+#include "carve/core/options.h"
+#include "carve/core/parallel.h"
+#include "carve/grid/shadow.h"
+
+namespace carve {
+namespace {
+
+/// All views' masks at the grid's resolution, by the plane they lie in: rows of bits along x where the plane has x.
+class Planes {
+ public:
+  explicit Planes(const VoxelGrid& grid)
+      : size_(grid.size()),
+        words_(grid.words_per_row()),
+        xy_(row_of_ones(), size_.y(), words_),
+        xz_(row_of_ones(), size_.z(), words_),
+        zy_(static_cast<std::size_t>(size_.z()) * size_.y(), 1) {}
+
+  void intersect(const PatchLabels& mask) {
+    const ShadowLayout layout(size_, mask.view);
+    for (int j = 0; j < layout.height; ++j) {
+      const int up = layout.up_index(j);
+      if (layout.frame.toward.axis == 0)
+        for (int i = 0; i < layout.width; ++i) zy_[layout.right_index(i) * size_.y() + up] &= mask.inside(i, j);
+      else
+        (layout.frame.toward.axis == 2 ? xy_ : xz_).intersect(up, layout, &mask.inside(0, j));
+    }
+  }
+
+  /// A row along x is the front's row and the top's row where the side shows the row, else nothing.
+  /// \return whether any bit is set
+  bool carve(int y, int z, std::uint64_t* row) const {
+    if (!zy_[z * size_.y() + y]) {
+      std::fill_n(row, words_, 0);
+      return false;
+    }
+    const std::uint64_t *front = xy_.row(y), *top = xz_.row(z);
+    std::uint64_t any = 0;
+    for (int w = 0; w < words_; ++w) any |= row[w] = front[w] & top[w];
+    return any != 0;
+  }
+
+ private:
+  struct BitPlane {
+    BitPlane(const std::vector<std::uint64_t>& ones, int rows, int words) : words_per_row(words) {
+      for (int j = 0; j < rows; ++j) words_.insert(words_.end(), ones.begin(), ones.end());
+    }
+    void intersect(int up, const ShadowLayout& layout, const std::uint8_t* inside) {
+      std::uint64_t* row = words_.data() + static_cast<std::size_t>(up) * words_per_row;
+      for (int w = 0; w < words_per_row; ++w) {
+        std::uint64_t word = 0;
+        const int bits = std::min(64, layout.width - 64 * w);
+        for (int b = 0; b < bits; ++b) word |= std::uint64_t{inside[layout.right_index(64 * w + b)]} << b;
+        row[w] &= word;
+      }
+    }
+    const std::uint64_t* row(int up) const { return words_.data() + static_cast<std::size_t>(up) * words_per_row; }
+    int words_per_row;
+    std::vector<std::uint64_t> words_;
+  };
+
+  std::vector<std::uint64_t> row_of_ones() const {
+    std::vector<std::uint64_t> row(words_, ~std::uint64_t{0});
+    if (const int rest = size_.x() % 64) row.back() = (std::uint64_t{1} << rest) - 1;
+    return row;
+  }
+
+  Vec3i size_;
+  int words_;
+  BitPlane xy_, xz_;
+  std::vector<std::uint8_t> zy_;  // [z * ny + y]
+};
+
+}  // namespace
+
+Carving carve_silhouettes(const ViewSet& views, const CarveOptions& options) {
+  check("", options);
+  Carving result{grid_over(views.low(), views.high(), options.grid), {}};
+  Planes planes(result.grid);
+  for (const AlignedView& view : views.views) {
+    result.views.push_back(patch_labels(view, result.grid, options.patch));
+    planes.intersect(result.views.back());
+  }
+
+  std::atomic<bool> any = false;
+  parallel_ranges(0, result.grid.size().z(), 4, [&](int first, int last) {
+    bool found = false;
+    for (int z = first; z < last; ++z)
+      for (int y = 0; y < result.grid.size().y(); ++y) found |= planes.carve(y, z, result.grid.row(y, z));
+    if (found) any = true;
+  });
+  if (!any) throw NoResult("the silhouettes have no voxel in common at grid " + std::to_string(options.grid));
+  return result;
+}
+
+}  // namespace carve
