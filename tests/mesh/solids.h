@@ -9,12 +9,12 @@
 
 namespace carve {
 
-inline Mesh tetrahedron() {
+inline Mesh tetrahedron_mesh() {
   return {{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
 }
 
 /// Corner i is at bit 0 of i in x, bit 1 in y, bit 2 in z.
-inline Mesh unit_cube() {
+inline Mesh cube_mesh() {
   Mesh cube;
   for (int i = 0; i < 8; ++i) cube.positions.emplace_back(i & 1, i >> 1 & 1, i >> 2);
   const int quads[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
@@ -26,7 +26,7 @@ inline Mesh unit_cube() {
 }
 
 /// 2 * around * across triangles.
-inline Mesh torus(int around = 24, int across = 12, double radius = 0.35, double tube = 0.15) {
+inline Mesh torus_mesh(int around = 24, int across = 12, double radius = 0.35, double tube = 0.15) {
   Mesh mesh;
   const double turn = 2 * std::numbers::pi;
   for (int i = 0; i < around; ++i)
@@ -42,7 +42,7 @@ inline Mesh torus(int around = 24, int across = 12, double radius = 0.35, double
 }
 
 /// The octahedron, every triangle split in four `times` times, on the unit sphere.
-inline Mesh ball(int times = 3) {
+inline Mesh ball_mesh(int times = 3) {
   Mesh mesh{{Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0), Vec3(0, 0, 1), Vec3(0, 0, -1)},
             {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
   for (; times > 0; --times) {
@@ -81,9 +81,9 @@ inline Mesh shaken(Mesh mesh, unsigned seed, double distance) {
 /// A closed surface with odd coordinates: seed picks shape, noise and scale.
 inline Mesh random_solid(unsigned seed) {
   std::mt19937 random(seed);
-  Mesh mesh = seed % 3 == 0   ? ball(1 + static_cast<int>(random() % 3))
-              : seed % 3 == 1 ? torus(3 + static_cast<int>(random() % 20), 3 + static_cast<int>(random() % 20))
-                              : together(unit_cube(), tetrahedron());
+  Mesh mesh = seed % 3 == 0   ? ball_mesh(1 + static_cast<int>(random() % 3))
+              : seed % 3 == 1 ? torus_mesh(3 + static_cast<int>(random() % 20), 3 + static_cast<int>(random() % 20))
+                              : together(cube_mesh(), tetrahedron_mesh());
   const double scale = std::pow(10.0, static_cast<int>(random() % 7) - 3);
   mesh = shaken(mesh, seed, 0.01);
   for (Vec3& p : mesh.positions) p *= scale;

@@ -42,22 +42,22 @@ void expect_solid(const Mesh& mesh, int components, int genus) {
 }
 
 TEST(Topology, KnownSolids) {
-  expect_solid(tetrahedron(), 1, 0);
-  expect_solid(unit_cube(), 1, 0);
-  expect_solid(ball(3), 1, 0);
-  expect_solid(torus(), 1, 1);
-  expect_solid(torus(3, 3), 1, 1);
-  expect_solid(together(torus(), unit_cube()), 2, 1);
+  expect_solid(tetrahedron_mesh(), 1, 0);
+  expect_solid(cube_mesh(), 1, 0);
+  expect_solid(ball_mesh(3), 1, 0);
+  expect_solid(torus_mesh(), 1, 1);
+  expect_solid(torus_mesh(3, 3), 1, 1);
+  expect_solid(together(torus_mesh(), cube_mesh()), 2, 1);
 }
 
 TEST(Topology, AreaAndVolumeOfTheCube) {
-  const Topology found = topology(unit_cube());
+  const Topology found = topology(cube_mesh());
   EXPECT_EQ(found.area, 6);
   EXPECT_DOUBLE_EQ(found.volume, 1);
 }
 
 TEST(Topology, VolumeIsNegativeInsideOut) {
-  Mesh cube = unit_cube();
+  Mesh cube = cube_mesh();
   for (Triangle& t : cube.triangles) std::swap(t[1], t[2]);
   const Topology found = topology(cube);
   EXPECT_TRUE(found.solid());
@@ -65,7 +65,7 @@ TEST(Topology, VolumeIsNegativeInsideOut) {
 }
 
 TEST(Topology, VolumeFarFromTheOriginStaysExact) {
-  Mesh cube = unit_cube();
+  Mesh cube = cube_mesh();
   for (Vec3& p : cube.positions) p += Vec3(1e9, -1e9, 1e9);
   EXPECT_DOUBLE_EQ(topology(cube).volume, 1);
 }
@@ -73,7 +73,7 @@ TEST(Topology, VolumeFarFromTheOriginStaysExact) {
 TEST(Topology, TheBallsVolumeAndAreaConvergeFromBelow) {
   double last_volume = 0, last_area = 0;
   for (int times = 2; times < 7; ++times) {
-    const Topology found = topology(ball(times));
+    const Topology found = topology(ball_mesh(times));
     EXPECT_GT(found.volume, last_volume);
     EXPECT_GT(found.area, last_area);
     last_volume = found.volume, last_area = found.area;
@@ -83,7 +83,7 @@ TEST(Topology, TheBallsVolumeAndAreaConvergeFromBelow) {
 }
 
 TEST(Topology, ATriangleMissingIsThreeBoundaryEdges) {
-  Mesh mesh = ball(2);
+  Mesh mesh = ball_mesh(2);
   mesh.triangles.erase(mesh.triangles.begin() + 7);
   const Topology found = topology(mesh);
   EXPECT_EQ(found.boundary_edges, 3);
@@ -94,7 +94,7 @@ TEST(Topology, ATriangleMissingIsThreeBoundaryEdges) {
 }
 
 TEST(Topology, ATriangleFlippedIsThreeMisorientedEdges) {
-  Mesh mesh = torus();
+  Mesh mesh = torus_mesh();
   std::swap(mesh.triangles[5][0], mesh.triangles[5][1]);
   const Topology found = topology(mesh);
   EXPECT_EQ(found.misoriented_edges, 3);
@@ -104,7 +104,7 @@ TEST(Topology, ATriangleFlippedIsThreeMisorientedEdges) {
 }
 
 TEST(Topology, TwoSolidsThatShareAVertexAreABowTie) {
-  Mesh mesh = together(tetrahedron(), tetrahedron());
+  Mesh mesh = together(tetrahedron_mesh(), tetrahedron_mesh());
   for (Triangle& t : mesh.triangles) std::replace(t.begin(), t.end(), 4, 0);
   const Topology found = topology(mesh);
   EXPECT_EQ(found.nonmanifold_vertices, 1);
@@ -116,7 +116,7 @@ TEST(Topology, TwoSolidsThatShareAVertexAreABowTie) {
 }
 
 TEST(Topology, TwoSolidsThatShareAnEdge) {
-  Mesh mesh = together(tetrahedron(), tetrahedron());
+  Mesh mesh = together(tetrahedron_mesh(), tetrahedron_mesh());
   for (Triangle& t : mesh.triangles) {
     std::replace(t.begin(), t.end(), 4, 0);
     std::replace(t.begin(), t.end(), 5, 1);
@@ -151,7 +151,7 @@ TEST(Topology, TheSameTriangleTwice) {
 }
 
 TEST(Topology, ARepeatedCornerIsDegenerateAndNotManifold) {
-  Mesh mesh = tetrahedron();
+  Mesh mesh = tetrahedron_mesh();
   mesh.triangles.push_back({1, 1, 2});
   const Topology found = topology(mesh);
   EXPECT_EQ(found.degenerate_triangles, 1);
@@ -161,13 +161,13 @@ TEST(Topology, ARepeatedCornerIsDegenerateAndNotManifold) {
 
 TEST(Topology, TrianglesWithoutAreaAreDegenerateAtAnyScaleAndPlace) {
   for (const double scale : {1e-6, 1.0, 1e6}) {
-    Mesh mesh = tetrahedron();
+    Mesh mesh = tetrahedron_mesh();
     mesh.positions[3] = Vec3(0.5, 0.5, 0);  // on an edge
     for (Vec3& p : mesh.positions) p *= scale;
     EXPECT_EQ(topology(mesh).degenerate_triangles, 1) << scale;
     EXPECT_TRUE(topology(mesh).solid()) << scale;
   }
-  EXPECT_EQ(topology(torus(400, 400, 1, 1e-6)).degenerate_triangles, 0);
+  EXPECT_EQ(topology(torus_mesh(400, 400, 1, 1e-6)).degenerate_triangles, 0);
 }
 
 TEST(Topology, AConeOfManyTrianglesIsOneFan) {
@@ -191,12 +191,12 @@ TEST(Topology, AnEmptyMeshIsNotSolid) {
 }
 
 TEST(Topology, RefusesWhatIsNoMesh) {
-  Mesh mesh = tetrahedron();
+  Mesh mesh = tetrahedron_mesh();
   mesh.triangles[2][1] = 4;
   EXPECT_THROW(topology(mesh), std::invalid_argument);
   mesh.triangles[2][1] = -1;
   EXPECT_THROW(topology(mesh), std::invalid_argument);
-  mesh = tetrahedron();
+  mesh = tetrahedron_mesh();
   mesh.positions[1].y() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(topology(mesh), std::invalid_argument);
   mesh.positions[1].y() = std::numeric_limits<double>::infinity();
@@ -205,7 +205,7 @@ TEST(Topology, RefusesWhatIsNoMesh) {
 
 TEST(Topology, PrintsOneLineAField) {
   std::ostringstream text;
-  text << topology(unit_cube());
+  text << topology(cube_mesh());
   EXPECT_NE(text.str().find("vertices             8\n"), std::string::npos);
   EXPECT_NE(text.str().find("solid                yes\n"), std::string::npos);
 }
@@ -290,7 +290,7 @@ TEST_P(TopologySeeds, RandomTriangleSoupsAreCountedByDefinition) {
 }
 
 TEST_P(TopologySeeds, ThreadsDoNotChangeABit) {
-  const Mesh mesh = shaken(ball(6), GetParam(), 0.01);
+  const Mesh mesh = shaken(ball_mesh(6), GetParam(), 0.01);
   set_thread_count(1);
   const Topology one = topology(mesh);
   set_thread_count(4);

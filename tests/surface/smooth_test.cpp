@@ -11,7 +11,7 @@ namespace {
 
 class SmoothTest : public ::testing::TestWithParam<unsigned> {
  protected:
-  Mesh noisy() const { return shaken(ball(3), GetParam(), 0.02); }
+  Mesh noisy() const { return shaken(ball_mesh(3), GetParam(), 0.02); }
 };
 INSTANTIATE_TEST_SUITE_P(Seeds, SmoothTest, ::testing::Range(0u, 8u));
 
@@ -66,7 +66,7 @@ TEST_P(SmoothTest, APlaneStaysExactlyPlane) {
 }
 
 TEST_P(SmoothTest, ThreadsDoNotChangeABit) {
-  const Mesh mesh = shaken(ball(6), GetParam(), 0.005);
+  const Mesh mesh = shaken(ball_mesh(6), GetParam(), 0.005);
   const SmoothOptions options{.steps = 3, .level = 20};
   set_thread_count(1);
   const Mesh one = smooth(mesh, options);
@@ -104,7 +104,7 @@ Mesh grid_box(int n) {
 }
 
 TEST(Smooth, AConvexSolidShrinksAtEveryStep) {
-  for (const Mesh& solid : {ball(2), ball(4), grid_box(5)}) {
+  for (const Mesh& solid : {ball_mesh(2), ball_mesh(4), grid_box(5)}) {
     double volume = topology(solid).volume;
     for (int steps = 1; steps < 6; ++steps) {
       const double next = topology(smooth(solid, {.steps = steps})).volume;
@@ -155,17 +155,17 @@ TEST(Smooth, AVertexOfManyTrianglesCostsNoSquare) {
 }
 
 TEST(Smooth, VerticesWithoutTrianglesStay) {
-  Mesh mesh = tetrahedron();
+  Mesh mesh = tetrahedron_mesh();
   mesh.positions.emplace_back(5, 6, 7);
   EXPECT_EQ(smooth(mesh).positions.back(), Vec3(5, 6, 7));
 }
 
 TEST(Smooth, RefusesOptionsOutOfRangeAndStops) {
-  EXPECT_THROW(smooth(tetrahedron(), {.steps = -1}), std::invalid_argument);
-  EXPECT_THROW(smooth(tetrahedron(), {.level = 181}), std::invalid_argument);
+  EXPECT_THROW(smooth(tetrahedron_mesh(), {.steps = -1}), std::invalid_argument);
+  EXPECT_THROW(smooth(tetrahedron_mesh(), {.level = 181}), std::invalid_argument);
   std::stop_source stop;
   stop.request_stop();
-  EXPECT_THROW(smooth(tetrahedron(), {}, {.stop = stop.get_token()}), Cancelled);
+  EXPECT_THROW(smooth(tetrahedron_mesh(), {}, {.stop = stop.get_token()}), Cancelled);
 }
 
 }  // namespace
