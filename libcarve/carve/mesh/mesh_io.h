@@ -9,14 +9,18 @@ struct WriteOptions {
   bool strict = true;  // refuse a mesh that is not closed, oriented and 2-manifold
 };
 
-/// Writes by the name's ending: .ply (binary little endian), .obj, .stl (binary, Z up as slicers expect), .glb
-/// (glTF 2.0, Y up, with normals), .off. Whole or not at all; numbers in the C locale; the same mesh gives the same
-/// bytes. \throws IoError; std::invalid_argument: unknown ending, or a mesh that is not solid under `strict`
+/// Writes by the name's ending: .ply (binary little endian), .obj, .off, .stl (binary, Z up as slicers expect), .glb
+/// (glTF 2.0, Y up, with normals). PLY, OBJ and OFF keep every bit of the coordinates; STL and GLB hold floats. Whole
+/// or not at all; numbers in the C locale; the same mesh gives the same bytes. \throws IoError if the file cannot be
+/// written; std::invalid_argument: unknown ending, an index or coordinate that
+///         check_mesh refuses or the format cannot hold, or (strict) a mesh that is not solid, saying what is wrong
 void write_mesh(const std::filesystem::path& path, const Mesh& mesh, const WriteOptions& options = {});
 
-/// Reads PLY (ascii, binary of either endianness), OBJ, STL (ascii, binary; equal corners merged), OFF, GLB; polygons
-/// are fan-triangulated. STL is turned from Z up to Y up, as write_mesh turned it. \throws IoError: missing, truncated,
-/// indices out of range, coordinates that are not finite, counts the file cannot hold
+/// Reads PLY (ascii, binary of either endianness), OBJ, STL (ascii, binary; equal corners merged), OFF and GLB (every
+/// mesh of the scene where its nodes put it); polygons are fan-triangulated, what is not geometry is skipped. STL is
+/// turned from Z up to Y up, as write_mesh turned it. Needs memory for the file and the mesh, whatever the file says.
+/// \throws IoError naming the place: missing, truncated, indices out of range, coordinates that are not finite, counts
+///         the file cannot hold
 Mesh read_mesh(const std::filesystem::path& path);
 
 }  // namespace carve

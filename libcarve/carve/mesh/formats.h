@@ -1,0 +1,109 @@
+#pragma once
+// What the mesh formats share; not part of the interface.
+#include <cstring>
+#include <iosfwd>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "carve/core/error.h"
+#include "carve/mesh/mesh_io.h"
+#include "carve/mesh/ply.h"
+
+namespace carve::formats {
+
+void write_ply(std::ostream& out, const Mesh& mesh, std::span<const VertexProperty> properties);
+void write_obj(std::ostream& out, const Mesh& mesh);
+void write_off(std::ostream& out, const Mesh& mesh);
+void write_stl(std::ostream& out, const Mesh& mesh);
+void write_glb(std::ostream& out, const Mesh& mesh);
+
+Mesh read_ply(const std::string& path, std::string_view bytes);
+Mesh read_obj(const std::string& path, std::string_view bytes);
+Mesh read_off(const std::string& path, std::string_view bytes);
+Mesh read_stl(const std::string& path, std::string_view bytes);
+Mesh read_glb(const std::string& path, std::string_view bytes);
+
+/// What every mesh must be before it is written; `path` begins the message. \throws std::invalid_argument
+void check_writable(const std::string& path, const Mesh& mesh, const WriteOptions& options);
+
+/// Gathers bytes for a stream in large pieces; numbers as the shortest text that reads back to the same value.
+class Sink {
+ public:
+  explicit Sink(std::ostream& out) : out_(out) { buffer_.reserve(kSize); }
+  ~Sink() { flush(); }
+  Sink(const Sink&) = delete;
+  Sink& operator=(const Sink&) = delete;
+
+  void text(std::string_view text) {
+    room(text.size());
+    buffer_.append(text);
+  }
+  void number(double value);
+  void number(int value);
+  /// As the machine holds it: little endian.
+  template <class T>
+  void raw(const T& value) {
+    char bytes[sizeof(T)];
+    std::memcpy(bytes, &value, sizeof(T));
+    room(sizeof(T));
+    buffer_.append(bytes, sizeof(T));
+  }
+
+ private:
+  static constexpr std::size_t kSize = 1 << 18;
+  void room(std::size_t size) {
+    if (buffer_.size() + size > kSize) flush();
+  }
+  void flush();
+
+  std::ostream& out_;
+  std::string buffer_;
+};
+
+/// Walks through the words of a text file's lines; '#' begins a comment, a line that ends in '\' goes on in the next.
+class TextReader {
+ public:
+  TextReader(const std::string& path, std::string_view text, bool comments = true)
+      : path_(path), text_(text), comments_(comments) {}
+
+  bool next_line();         // to the next line that has words; false at the end of the file
+  std::string_view word();  // the line's next word, empty if it has no more
+  bool has_word();
+  double coordinate();  // the line's next word as a finite number
+  long long whole(const char* field);
+  std::string_view rest() const { return text_.substr(next_); }  // what follows the line
+  std::size_t bytes_left() const { return text_.size() - at_; }
+  long long line() const { return line_; }
+  [[noreturn]] void fail(const std::string& why) const;  // IoError: path:line: why
+
+ private:
+  void skip_spaces();
+  bool ends_word(std::size_t at) const;
+  template <class Number>
+  Number number(const char* field);
+  void begin_line(std::size_t at);
+
+  std::string path_;
+  std::string_view text_;
+  bool comments_;
+  std::size_t at_ = 0, end_ = 0, next_ = 0;  // in the text: the next word, the end of its line, the next line
+  long long line_ = 0;
+};
+
+/// For messages: "the file ends before vertex 7 of 12".
+std::string ends_at(const std::string& element, std::size_t index, std::size_t count);
+
+/// For messages: a piece of a file, printable and short, in quotes.
+std::string excerpt(std::string_view text);
+
+/// The triangles of the polygon's fan. \param corners indices; at least three
+template <class Corners>
+void add_polygon(Mesh& mesh, const Corners& corners) {
+  for (std::size_t i = 2; i < corners.size(); ++i) mesh.triangles.push_back({corners[0], corners[i - 1], corners[i]});
+}
+
+/// Any coordinate as a float. \throws std::invalid_argument if it is too large for one
+float to_float(double value, const char* format);
+
+}  // namespace carve::formats

@@ -1,0 +1,125 @@
+#include "carve/surface/smooth.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <span>
+
+#include "carve/core/options.h"
+#include "carve/core/parallel.h"
+#include "carve/mesh/adjacency.h"
+
+namespace carve {
+namespace {
+
+constexpr int kGrain = 1 << 12;
+
+// The one-ring of each vertex: its neighbours, once each.
+struct Rings {
+  std::vector<std::uint32_t> first;  // #V + 1
+  std::vector<int> neighbours;
+};
+
+void collect_ring(const Mesh& mesh, std::span<const int> triangles, int vertex, std::vector<int>& ring) {
+  constexpr std::size_t kFew = 32;  // searching is quadratic, but faster for as few as most vertices have
+  ring.clear();
+  const auto add = [&](int other) {
+    if (other != vertex && (ring.size() > kFew || std::find(ring.begin(), ring.end(), other) == ring.end()))
+      ring.push_back(other);
+  };
+  for (const int t : triangles)
+    for (const int other : mesh.triangles[t]) add(other);
+  if (ring.size() <= kFew) return;
+  std::sort(ring.begin(), ring.end());
+  ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+}
+
+Rings one_rings(const Mesh& mesh, const VertexTriangles& around) {
+  const int vertices = static_cast<int>(mesh.positions.size());
+  Rings rings{std::vector<std::uint32_t>(vertices + 1), {}};
+  const auto each_ring = [&](auto use) {
+    parallel_ranges(0, vertices, kGrain, [&](int first, int last) {
+      std::vector<int> ring;
+      for (int v = first; v < last; ++v) {
+        collect_ring(mesh, around[v], v, ring);
+        use(v, ring);
+      }
+    });
+  };
+  each_ring([&](int v, const std::vector<int>& ring) { rings.first[v + 1] = static_cast<std::uint32_t>(ring.size()); });
+  for (int v = 0; v < vertices; ++v) rings.first[v + 1] += rings.first[v];
+  rings.neighbours.resize(rings.first.back());
+  each_ring([&](int v, const std::vector<int>& ring) {
+    std::copy(ring.begin(), ring.end(), rings.neighbours.begin() + rings.first[v]);
+  });
+  return rings;
+}
+
+std::vector<Vec3> unit_normals(const Mesh& mesh) {
+  std::vector<Vec3> normals(mesh.triangles.size());
+  parallel_ranges(0, static_cast<int>(normals.size()), kGrain, [&](int first, int last) {
+    for (int t = first; t < last; ++t) {
+      const auto& [a, b, c] = mesh.triangles[t];
+      const Vec3& origin = mesh.positions[a];
+      normals[t] = (mesh.positions[b] - origin).cross(mesh.positions[c] - origin).stableNormalized();
+    }
+  });
+  return normals;
+}
+
+// 1 for the vertices on an edge whose triangles' normals differ by more than `level` degrees.
+std::vector<std::uint8_t> sharp_vertices(const Mesh& mesh, const VertexTriangles& around, double level) {
+  constexpr double kRounding = 1e-12;  // a right angle is not sharper than 90 degrees
+  const double lowest = std::cos(level * std::numbers::pi / 180) - kRounding;
+  const std::vector<Vec3> normals = unit_normals(mesh);
+  std::vector<std::uint8_t> sharp(mesh.positions.size());
+  parallel_ranges(0, static_cast<int>(sharp.size()), kGrain, [&](int first, int last) {
+    std::vector<std::pair<int, int>> spokes;  // neighbour, triangle
+    for (int v = first; v < last; ++v) {
+      spokes.clear();
+      for (const int t : around[v])
+        for (const int other : mesh.triangles[t])
+          if (other != v) spokes.emplace_back(other, t);
+      std::sort(spokes.begin(), spokes.end());
+      for (std::size_t i = 1; i < spokes.size(); ++i) {
+        const Vec3 &a = normals[spokes[i - 1].second], &b = normals[spokes[i].second];
+        // Without area there is no normal, and no angle.
+        if (spokes[i - 1].first == spokes[i].first && !a.isZero(0) && !b.isZero(0) && a.dot(b) < lowest) sharp[v] = 1;
+      }
+    }
+  });
+  return sharp;
+}
+
+}  // namespace
+
+Mesh smooth(Mesh mesh, const SmoothOptions& options, const Monitor& monitor) {
+  check("smooth", options);
+  if (options.steps == 0 || options.level == 0) return mesh;
+  const VertexTriangles around = vertex_triangles(mesh);
+  // Found once: what is sharp in the input stays, however the steps bend its surroundings.
+  const std::vector<std::uint8_t> sharp = options.level < 180 ? sharp_vertices(mesh, around, options.level)
+                                                              : std::vector<std::uint8_t>(mesh.positions.size());
+  const Rings rings = one_rings(mesh, around);
+  std::vector<Vec3> moved(mesh.positions.size());
+  for (int step = 0; step < options.steps; ++step) {
+    monitor.at("smooth", static_cast<double>(step) / options.steps);
+    parallel_ranges(0, static_cast<int>(moved.size()), kGrain, [&](int first, int last) {
+      for (int v = first; v < last; ++v) {
+        const Vec3& position = mesh.positions[v];
+        const std::uint32_t begin = rings.first[v], end = sharp[v] ? begin : rings.first[v + 1];
+        // Summing differences, as Equation 3.7 does, keeps planes exactly plane.
+        Vec3 sum = Vec3::Zero();
+        for (std::uint32_t i = begin; i < end; ++i) sum += mesh.positions[rings.neighbours[i]] - position;
+        moved[v] = end > begin ? Vec3(position + sum / (end - begin)) : position;
+      }
+    });
+    mesh.positions.swap(moved);
+  }
+  monitor.at("smooth", 1);
+  return mesh;
+}
+
+}  // namespace carve
