@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -175,13 +176,13 @@ TEST_F(CarveProgram, ViewsThatShareNoAxis) {
 }
 
 TEST_F(CarveProgram, SilhouettesWithoutACommonVoxel) {
-  // The front shows two opposite corners, the others the middle and two dots that make their boxes as large.
-  const auto middle_and_dots = [](int x, int y) {
-    return (x >= 24 && x < 40 && y >= 24 && y < 40) || (x == y && (x == 0 || x == 63));
-  };
+  // The front shows two opposite corners, the others the middle and two dots that make their boxes as large: at the
+  // front's corners the top's dots and the side's lie at different depths.
+  const auto middle = [](int x, int y) { return x >= 24 && x < 40 && y >= 24 && y < 40; };
+  const auto corner = [](int x, int y) { return (x == 0 || x == 63) && (y == 0 || y == 63); };
   write_png(path("front.png"), painted(64, [](int x, int y) { return (x < 8 && y >= 56) || (x >= 56 && y < 8); }));
-  write_png(path("side.png"), painted(64, middle_and_dots));
-  write_png(path("top.png"), painted(64, middle_and_dots));
+  write_png(path("side.png"), painted(64, [&](int x, int y) { return middle(x, y) || (corner(x, y) && x != y); }));
+  write_png(path("top.png"), painted(64, [&](int x, int y) { return middle(x, y) || (corner(x, y) && x == y); }));
   expect_refused(build("-o " + path("out.ply")), {"no voxel in common"}, 1);
 }
 
