@@ -1,0 +1,75 @@
+#include <iostream>
+
+#include "apps/command_line.h"
+#include "carve/core/error.h"
+#include "carve/core/file.h"
+#include "carve/core/parallel.h"
+#include "carve/mesh/mesh_io.h"
+#include "eval/report.h"
+
+namespace {
+using namespace carve;
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::vector<fs::path> compared;
+  fs::path reference, csv;
+  CompareOptions options;
+  bool json = false;
+  int threads = 0;
+};
+
+// What the library says of a mesh, with the name of its file.
+template <class Work>
+auto about(const fs::path& file, const Work& work) {
+  try {
+    return work();
+  } catch (const std::invalid_argument& error) {
+    throw IoError(file.string(), error.what());
+  }
+}
+
+int compare(const Arguments& arguments) {
+  set_thread_count(arguments.threads);
+  check("", arguments.options);
+  const Reference reference =
+      about(arguments.reference, [&] { return Reference(read_mesh(arguments.reference), arguments.options); });
+  const ReportHead head{arguments.reference.string(), reference.mesh().positions.size(),
+                        reference.mesh().triangles.size(), reference.diagonal(), arguments.options};
+  std::vector<Row> rows;
+  for (const fs::path& file : arguments.compared) {
+    const Mesh mesh = read_mesh(file);
+    const Comparison comparison = about(file, [&] { return reference.compare(mesh); });
+    rows.push_back({file.string(), mesh.positions.size(), mesh.triangles.size(), scores(comparison, reference)});
+  }
+  if (!arguments.csv.empty()) write_file(arguments.csv, [&](std::ostream& out) { write_csv(out, head, rows); });
+  if (arguments.json)
+    std::cout << to_json(head, rows) << '\n';
+  else
+    write_text(std::cout, head, rows);
+  return kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app("Distances and other metrics of meshes or clouds to a reference mesh.", "cloud_to_mesh");
+  app.add_option("compared", arguments.compared, "meshes, or PLY clouds: .ply .obj .off .stl .glb")
+      ->required()
+      ->type_name("FILE");
+  app.add_option("--reference", arguments.reference, "the mesh they are measured against")
+      ->required()
+      ->type_name("FILE");
+  app.add_flag("--json", arguments.json, "JSON on standard output");
+  app.add_option("--csv", arguments.csv, "also write a line a file and metric")->type_name("FILE");
+  app.add_option("--threads", arguments.threads, "threads to use; 0 = all cores; never changes the result")
+      ->check(CLI::Range(0, 1024));
+  std::vector<Field> options;
+  add_fields(options, "", arguments.options);
+  add_flags(app, options);
+  app.footer(
+      "Example:\n  cloud_to_mesh a.ply b.obj --reference truth.ply --tolerances 0.5,1 --csv scores.csv\n"
+      "Exit codes: 0 done, 1 the work could not be done, 2 wrong usage or bad input.");
+  return run_program(app, argc, argv, [&] { return compare(arguments); });
+}
