@@ -96,6 +96,7 @@ Model box_pockets() {
   return placed(std::move(model));
 }
 
+// Its inner wall is upright for the first tenth below the rim, so that the rim is a stroke in the top view.
 Model bowl() {
   std::vector<Vec2> profile{{0, 0}, {0.24, 0}};
   const auto arc = [&](double radius, double centre, double from, double to) {
@@ -104,10 +105,11 @@ Model bowl() {
       profile.emplace_back(radius * std::sin(angle), centre - radius * std::cos(angle));
     }
   };
-  arc(0.5, 0.44, 30, 84);
-  arc(0.44, 0.44, 84, 2);
-  profile.emplace_back(0, 0);
-  profile.back().y() = profile[profile.size() - 2].y();
+  arc(0.5, 0.42, 30, 90);
+  profile.emplace_back(0.5, 0.5);
+  profile.emplace_back(0.43, 0.5);
+  arc(0.43, 0.40, 90, 2);
+  profile.emplace_back(0, profile.back().y());
   Model model;
   add(model, "sand", kSand, lathe(profile, 96));
   return placed(std::move(model));

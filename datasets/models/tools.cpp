@@ -7,7 +7,8 @@
 namespace carve {
 namespace {
 
-constexpr Rgba kSteel{178, 188, 198}, kIron{120, 128, 140}, kAsh{168, 116, 70}, kLeather{110, 74, 66};
+constexpr Rgba kSteel{178, 188, 198}, kIron{120, 128, 140}, kAsh{168, 116, 70}, kLeather{110, 74, 66},
+    kGun{92, 96, 106};
 
 }  // namespace
 
@@ -40,6 +41,33 @@ Model axe() {
   };
   add(model, "wood", kAsh, handle(0, 1.0, 0));
   add(model, "leather", kLeather, handle(0.10, 0.30, 0.006));
+  return placed(std::move(model));
+}
+
+// A pistol that points at the viewer of the front drawing; its broad side is the side view.
+Model handgun() {
+  Model model;
+  add(model, "slide", kSteel, rounded_box({-0.062, 0.62, -0.46}, {0.062, 0.80, 0.52}, 0.02));
+  add(model, "frame", kGun, rounded_box({-0.056, 0.52, -0.43}, {0.056, 0.64, 0.44}, 0.015));
+  add(model, "barrel", kIron, cylinder({0, 0.71, 0.5}, {0, 0.71, 0.545}, 0.042));
+  add(model, "bore", kGun, cylinder({0, 0.71, 0.51}, {0, 0.71, 0.55}, 0.022));
+  const Vec2 grip[] = {{0.56, -0.42}, {0.56, -0.12}, {0.40, -0.16}, {0.03, -0.27},
+                       {0.0, -0.30},  {0.0, -0.55},  {0.05, -0.57}, {0.42, -0.44}};
+  add(model, "frame", kGun, prism(grip, 0, -0.05, 0.05));
+  const Vec2 panel[] = {{0.47, -0.395}, {0.47, -0.19}, {0.06, -0.295}, {0.06, -0.53}};
+  add(model, "panel", kAsh, prism(panel, 0, -0.068, 0.068));
+  const Vec3 guard[] = {{0, 0.53, 0.16}, {0, 0.42, 0.155}, {0, 0.36, 0.08}, {0, 0.355, -0.05}, {0, 0.38, -0.16}};
+  const std::vector<Vec3> path = curve(guard, 8);
+  add(model, "frame", kGun, tube(path, std::vector<double>(path.size(), 0.024), 24));
+  const Vec3 trigger[] = {{0, 0.54, -0.02}, {0, 0.47, 0.0}, {0, 0.41, 0.035}};
+  const std::vector<Vec3> pull = curve(trigger, 8);
+  add(model, "trigger", kIron, tube(pull, std::vector<double>(pull.size(), 0.018), 24));
+  add(model, "sight", kGun, box({-0.012, 0.79, 0.43}, {0.012, 0.83, 0.48}));
+  add(model, "sight", kGun, box({-0.04, 0.79, -0.43}, {0.04, 0.825, -0.38}));
+  add(model, "hammer", kGun, rounded_box({-0.02, 0.66, -0.52}, {0.02, 0.78, -0.44}, 0.015));
+  // Grip grooves at the slide's rear.
+  for (int i = 0; i < 5; ++i)
+    add(model, "groove", kIron, box({-0.0645, 0.65, -0.40 + 0.035 * i}, {0.0645, 0.77, -0.385 + 0.035 * i}));
   return placed(std::move(model));
 }
 

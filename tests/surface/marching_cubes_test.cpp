@@ -46,7 +46,7 @@ TEST(MarchingCubes, RowsOfEveryLengthGiveSolids) {
   for (int nx : {1, 2, 62, 63, 64, 65, 66, 127, 128, 129}) {
     const Mesh mesh = marching_cubes(random_grid({nx, 3, 2}, nx, 5));
     EXPECT_EQ(solid_fault(mesh), "") << nx;
-    EXPECT_EQ(solid_fault(marching_cubes(VoxelGrid({nx, 3, 2}, Vec3::Zero(), 1, true))), "") << nx;
+    EXPECT_EQ(solid_fault(marching_cubes(VoxelGrid({nx, 3, 2}, Vec3::Zero(), 1, Fill::full))), "") << nx;
   }
 }
 

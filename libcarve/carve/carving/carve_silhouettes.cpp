@@ -79,7 +79,7 @@ class Planes {
 
 Carving carve_silhouettes(const ViewSet& views, const CarveOptions& options) {
   check("", options);
-  Carving result{grid_over(views.low(), views.high(), options.grid), {}};
+  Carving result{grid_over(views.low(), views.high(), options.grid, Fill::undefined), {}};
   Planes planes(result.grid);
   for (const AlignedView& view : views.views) {
     result.views.push_back(patch_labels(view, result.grid, options.patch));

@@ -15,7 +15,7 @@ void check_same_size(const VoxelGrid& a, const VoxelGrid& b) {
 
 }  // namespace
 
-VoxelGrid::VoxelGrid(Vec3i size, Vec3 low, double spacing, bool fill)
+VoxelGrid::VoxelGrid(Vec3i size, Vec3 low, double spacing, Fill fill)
     : size_(std::move(size)), low_(std::move(low)), spacing_(spacing) {
   if (size_.minCoeff() < 1 || size_.maxCoeff() > kLargestGrid) {
     const int wrong = size_.minCoeff() < 1 ? size_.minCoeff() : size_.maxCoeff();
@@ -25,8 +25,10 @@ VoxelGrid::VoxelGrid(Vec3i size, Vec3 low, double spacing, bool fill)
   if (!(spacing > 0) || !std::isfinite(spacing))
     throw std::invalid_argument("grid spacing must be positive, got " + std::to_string(spacing));
   words_per_row_ = (size_.x() + 63) / 64;
-  words_.resize(static_cast<std::size_t>(size_.z()) * size_.y() * words_per_row_, fill ? ~std::uint64_t{0} : 0);
-  if (const int rest = size_.x() % 64; fill && rest)
+  words_.resize(static_cast<std::size_t>(size_.z()) * size_.y() * words_per_row_);
+  if (fill == Fill::undefined) return;
+  std::ranges::fill(words_, fill == Fill::full ? ~std::uint64_t{0} : 0);
+  if (const int rest = size_.x() % 64; fill == Fill::full && rest)
     for (std::size_t last = words_per_row_ - 1; last < words_.size(); last += words_per_row_)
       words_[last] = (std::uint64_t{1} << rest) - 1;
 }
@@ -37,7 +39,7 @@ std::int64_t VoxelGrid::count() const {
   return sum;
 }
 
-VoxelGrid grid_over(const Vec3& low, const Vec3& high, int resolution) {
+VoxelGrid grid_over(const Vec3& low, const Vec3& high, int resolution, Fill fill) {
   if (resolution < 1 || resolution > kLargestGrid)
     throw std::invalid_argument("grid must be in [1, " + std::to_string(kLargestGrid) + "], got " +
                                 std::to_string(resolution));
@@ -46,7 +48,7 @@ VoxelGrid grid_over(const Vec3& low, const Vec3& high, int resolution) {
   const double spacing = extent.maxCoeff() / resolution;
   // An extent of a whole number of voxels but for rounding gets no further layer.
   const Vec3i size = (extent.array() / spacing - 1e-9).ceil().cast<int>().max(1);
-  return VoxelGrid(size, (low + high) / 2 - spacing / 2 * size.cast<double>(), spacing);
+  return VoxelGrid(size, (low + high) / 2 - spacing / 2 * size.cast<double>(), spacing, fill);
 }
 
 bool contains(const VoxelGrid& outer, const VoxelGrid& inner) {

@@ -3,11 +3,15 @@
 #include <span>
 #include <vector>
 
+#include "carve/core/pages.h"
 #include "carve/core/vector.h"
 
 namespace carve {
 
 inline constexpr int kLargestGrid = 2048;  // voxels along one axis
+
+/// What a new grid holds. `undefined` is for those who write every word themselves, the bits past nx as 0.
+enum class Fill { empty, full, undefined };
 
 /// Occupancy of a box of voxels, one bit each. Bit (x, y, z) stands for the voxel's centre; 1 = inside.
 ///
@@ -18,7 +22,7 @@ class VoxelGrid {
   VoxelGrid() = default;
   /// \param low  world position of the box's lower corner: voxel (x, y, z) has its centre at low + spacing * (x+.5,
   /// ...) \throws std::invalid_argument if a size is not in [1, kLargestGrid], or spacing not positive and finite
-  VoxelGrid(Vec3i size, Vec3 low, double spacing, bool fill = false);
+  VoxelGrid(Vec3i size, Vec3 low, double spacing, Fill fill = Fill::empty);
 
   const Vec3i& size() const { return size_; }
   const Vec3& low() const { return low_; }
@@ -51,12 +55,12 @@ class VoxelGrid {
   Vec3 low_ = Vec3::Zero();
   double spacing_ = 1;
   int words_per_row_ = 0;
-  std::vector<std::uint64_t> words_;
+  std::vector<std::uint64_t, PageAllocator<std::uint64_t>> words_;
 };
 
-/// An empty grid with `resolution` voxels along the longest side of a box, centred on it; each axis gets as many whole
+/// A grid with `resolution` voxels along the longest side of a box, centred on it; each axis gets as many whole
 /// voxels as cover it. \throws std::invalid_argument: resolution not in [1, kLargestGrid], or an empty box
-VoxelGrid grid_over(const Vec3& low, const Vec3& high, int resolution);
+VoxelGrid grid_over(const Vec3& low, const Vec3& high, int resolution, Fill fill = Fill::empty);
 
 /// Every voxel of `inner` is one of `outer`. \throws std::invalid_argument if the grids' sizes differ
 bool contains(const VoxelGrid& outer, const VoxelGrid& inner);

@@ -2,11 +2,11 @@
 
 #include <bit>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "carve/core/pages.h"
 #include "carve/core/parallel.h"
 #include "carve/surface/cube_table.h"
 
@@ -14,19 +14,114 @@ namespace carve {
 namespace {
 
 // The cell (cx, cy, cz) has the voxel centres (cx - 1 .. cx, cy - 1 .. cy, cz - 1 .. cz) as corners; cells run from 0
-// to the grid's size, so that a layer of cells reaches half out of the grid on every side. A grid edge is named by its
-// upper centre and its axis: the cell owns the three edges that end in its upper corner.
+// to the grid's size, so that a layer of them reaches half out of the grid on every side. A cell owns the three grid
+// edges that end in its upper corner. Along a row of cells, vertices are numbered as the scan passes them: each of the
+// eight kinds of edges that end at cx has a counter, and the edges that end at cx - 1 are the ones counted last.
+
+constexpr int kCounters = 8;                                               // edges ending at cx:
+constexpr int kCounted[kCounters] = {0, 1, 2, 3, 5, 7, 9, 11};             // along x; y; z (surface/cube_table.h)
+constexpr int kPassed[4] = {4, 6, 8, 10};                                  // those at cx - 1: y, z
+constexpr int kOwnedX = 3, kOwnedY = 7, kOwnedZ = 11;                      // edges
+constexpr int kCornerX = 6, kCornerY = 5, kCornerZ = 3, kUpperCorner = 7;  // where they come from, and end
+constexpr int kMostWords = kLargestGrid / 64 + 1;                          // of a row of cells
+
+using Counters = std::array<int, kCounters>;
+
+/// What the scan needs to know of each case, beside its triangles.
+struct Case {
+  Counters step;        // vertices that the counters pass
+  std::uint64_t owned;  // number of owned vertices along x, y, z and of triangles, 16 bits each
+  std::uint8_t triangles;
+  std::array<std::uint8_t, 15> slots;  // of the triangles' corners: counters, then passed edges
+};
+
+const std::array<Case, 256>& cases() {
+  static const auto all = [] {
+    std::array<Case, 256> all{};
+    for (int inside = 0; inside < 256; ++inside) {
+      const CubeCase& cube = cube_table()[inside];
+      const auto cut = [&](int edge) -> int {
+        const auto [a, b] = cube_edge(edge);
+        return (inside >> a ^ inside >> b) & 1;
+      };
+      std::array<int, 12> slot_of_edge{};
+      Case& c = all[inside];
+      for (int k = 0; k < kCounters; ++k) c.step[k] = cut(kCounted[k]), slot_of_edge[kCounted[k]] = k;
+      for (int k = 0; k < 4; ++k) slot_of_edge[kPassed[k]] = kCounters + k;
+      for (int t = 0; t < cube.triangles; ++t)
+        for (int k = 0; k < 3; ++k) c.slots[3 * t + k] = static_cast<std::uint8_t>(slot_of_edge[cube.edges[t][k]]);
+      c.triangles = cube.triangles;
+      c.owned = std::uint64_t(cut(kOwnedX)) | std::uint64_t(cut(kOwnedY)) << 16 | std::uint64_t(cut(kOwnedZ)) << 32 |
+                std::uint64_t{cube.triangles} << 48;
+    }
+    return all;
+  }();
+  return all;
+}
 
 struct Row {
-  int x = 0, y = 0, z = 0;  // owned edges with a vertex: their number, then the first one's index
+  int x = 0, y = 0, z = 0;  // owned vertices on edges along x, y, z: their number, then the first one's index
   int cells = 0;            // active cells
 };
 
 /// A layer of cells of one cz.
 struct Layer {
-  std::vector<std::uint16_t> columns;  // cx of each active cell, row by row
-  std::vector<std::uint8_t> cases;     // and its case
+  std::vector<std::uint32_t> cells;  // the active ones, row by row: cx << 8 | case
   std::int64_t vertices = 0, triangles = 0;
+};
+
+/// A bit for every cell of a row whose eight corners are not all alike.
+void find_active(const std::uint64_t* const corners[4], int words_per_row, int words, std::uint64_t* active) {
+  std::uint64_t any[kMostWords + 1], all[kMostWords + 1];
+  any[0] = all[0] = any[words] = all[words] = 0;
+  for (int w = 0; w < words_per_row; ++w) {
+    const std::uint64_t a = corners[0][w], b = corners[1][w], c = corners[2][w], d = corners[3][w];
+    any[w + 1] = a | b | c | d;
+    all[w + 1] = a & b & c & d;
+  }
+  for (int w = 0; w < words; ++w)
+    active[w] = (any[w + 1] | any[w + 1] << 1 | any[w] >> 63) & ~(all[w + 1] & (all[w + 1] << 1 | all[w] >> 63));
+}
+
+/// Where on an edge its vertex lies, from the lower centre: at the nearest crossing seen from the inside one.
+double share(bool upper_inside, float a, float b) {
+  const float sign = upper_inside ? -1.f : 1.f;
+  const float from_a = sign * a > 0 ? sign * a : 1.f, from_b = sign * b > 0 ? sign * b : 1.f;
+  const float nearest = from_a < from_b ? from_a : from_b;
+  const double distance = nearest < 1 ? nearest : 0.5f;
+  return upper_inside ? 1 - distance : distance;
+}
+
+/// Puts the vertices that the cells of one row own.
+class RowPlaces {
+ public:
+  RowPlaces(const VoxelGrid& grid, const Crossings& crossings, const std::vector<float>& nothing, int cy, int cz)
+      : spacing_(grid.spacing()), low_(grid.low()), cy_(cy), cz_(cz) {
+    const auto row = [&](const Raster<float>& plane, int j) {
+      return plane.empty() || j >= plane.height ? nothing.data() : &plane(0, j);
+    };
+    const auto entry = [](const Raster<float>& plane, int i, int j) { return plane.contains(i, j) ? plane(i, j) : 0; };
+    along_x_ = {row(crossings.xy.first, cy), row(crossings.xz.first, cz)};
+    along_y_ = row(crossings.xy.second, cy);
+    along_z_ = row(crossings.xz.second, cz);
+    side_y_ = entry(crossings.yz.first, cy, cz);
+    side_z_ = entry(crossings.yz.second, cy, cz);
+  }
+
+  Vec3 x(int cx, bool upper) const { return place(cx + share(upper, along_x_[0][cx], along_x_[1][cx]) - 1, cy_, cz_); }
+  Vec3 y(int cx, bool upper) const { return place(cx, cy_ + share(upper, along_y_[cx], side_y_) - 1, cz_); }
+  Vec3 z(int cx, bool upper) const { return place(cx, cy_, cz_ + share(upper, along_z_[cx], side_z_) - 1); }
+
+ private:
+  Vec3 place(double x, double y, double z) const {
+    return {low_.x() + spacing_ * (x + 0.5), low_.y() + spacing_ * (y + 0.5), low_.z() + spacing_ * (z + 0.5)};
+  }
+  double spacing_;
+  Vec3 low_;
+  int cy_, cz_;
+  std::array<const float*, 2> along_x_;
+  const float *along_y_, *along_z_;
+  float side_y_, side_z_;
 };
 
 class MarchingCubes {
@@ -35,7 +130,9 @@ class MarchingCubes {
       : grid_(grid),
         crossings_(crossings),
         size_(grid.size()),
-        empty_row_(grid.words_per_row(), 0),
+        words_(size_.x() / 64 + 1),
+        empty_row_(words_, 0),
+        no_crossings_(size_.x() + 1, 0.f),
         rows_(static_cast<std::size_t>(size_.y() + 1) * (size_.z() + 1)),
         layers_(size_.z() + 1) {}
 
@@ -44,10 +141,10 @@ class MarchingCubes {
     parallel_ranges(0, layers, 1, [&](int first, int last) {
       for (int z = first; z < last; ++z) classify(z);
     });
-    Mesh mesh;
     const auto [vertices, triangles] = number();
-    mesh.positions.resize(vertices);
-    mesh.triangles.resize(triangles);
+    Mesh mesh;
+    resize_on_huge_pages(mesh.positions, vertices);
+    resize_on_huge_pages(mesh.triangles, triangles);
     parallel_ranges(0, layers, 1, [&](int first, int last) {
       for (int z = first; z < last; ++z) fill(z, mesh);
     });
@@ -60,123 +157,92 @@ class MarchingCubes {
   }
   Row& row(int y, int z) { return rows_[static_cast<std::size_t>(z) * (size_.y() + 1) + y]; }
 
-  /// Pass 1: finds the layer's active cells.
+  /// Pass 1: finds and counts the layer's active cells.
   void classify(int z) {
-    for (int y = 0; y <= size_.y(); ++y) classify(y, z);
-    for (std::uint8_t c : layers_[z].cases) layers_[z].triangles += cube_table()[c].triangles;
-  }
-
-  void classify(int y, int z) {
-    const std::uint64_t* corner_rows[] = {voxels(y - 1, z - 1), voxels(y, z - 1), voxels(y - 1, z), voxels(y, z)};
-    const int words = size_.x() / 64 + 1;
-    Row& row = this->row(y, z);
-    Layer& layer = layers_[z];
-    std::uint64_t low[4], high[4] = {}, carry[4] = {};
-    for (int w = 0; w < words; ++w) {
-      std::uint64_t any = 0, all = ~std::uint64_t{0};
-      for (int k = 0; k < 4; ++k) {
-        carry[k] = high[k] >> 63;
-        high[k] = w < grid_.words_per_row() ? corner_rows[k][w] : 0;
-        low[k] = high[k] << 1 | carry[k];
-        any |= high[k] | low[k];
-        all &= high[k] & low[k];
+    const std::array<Case, 256>& cases = carve::cases();
+    std::vector<std::uint32_t> found(size_.x() + 1);
+    for (int y = 0; y <= size_.y(); ++y) {
+      const std::uint64_t* const corners[] = {voxels(y - 1, z - 1), voxels(y, z - 1), voxels(y - 1, z), voxels(y, z)};
+      std::uint64_t active[kMostWords], owned = 0;
+      find_active(corners, grid_.words_per_row(), words_, active);
+      std::uint32_t* end = found.data();
+      for (int w = 0; w < words_; ++w) {
+        if (!active[w]) continue;
+        std::uint64_t high[4], low[4];
+        for (int k = 0; k < 4; ++k) {
+          high[k] = w < grid_.words_per_row() ? corners[k][w] : 0;
+          low[k] = high[k] << 1 | (w > 0 ? corners[k][w - 1] >> 63 : 0);
+        }
+        for (std::uint64_t rest = active[w]; rest; rest &= rest - 1) {
+          const int b = std::countr_zero(rest);
+          std::uint32_t inside = 0;
+          for (int k = 0; k < 4; ++k) inside |= (low[k] >> b & 1) << 2 * k | (high[k] >> b & 1) << (2 * k + 1);
+          *end++ = static_cast<std::uint32_t>(64 * w + b) << 8 | inside;
+          owned += cases[inside].owned;
+        }
       }
-      std::uint64_t active = any & ~all;
-      if (!active) continue;
-      row.x += std::popcount(high[3] ^ low[3]);
-      row.y += std::popcount(high[3] ^ high[2]);
-      row.z += std::popcount(high[3] ^ high[1]);
-      row.cells += std::popcount(active);
-      for (; active; active &= active - 1) {
-        const int b = std::countr_zero(active);
-        unsigned inside = 0;
-        for (int k = 0; k < 4; ++k) inside |= (low[k] >> b & 1) << 2 * k | (high[k] >> b & 1) << (2 * k + 1);
-        layer.columns.push_back(static_cast<std::uint16_t>(64 * w + b));
-        layer.cases.push_back(static_cast<std::uint8_t>(inside));
-      }
+      const auto part = [&](int k) { return static_cast<int>(owned >> 16 * k & 0xffff); };
+      row(y, z) = {part(0), part(1), part(2), static_cast<int>(end - found.data())};
+      layers_[z].vertices += part(0) + part(1) + part(2);
+      layers_[z].triangles += part(3);
+      layers_[z].cells.insert(layers_[z].cells.end(), found.data(), end);
     }
-    layer.vertices += row.x + row.y + row.z;
   }
 
   /// Turns the rows' and layers' counts into first indices. \return vertices and triangles of the mesh
   std::pair<std::size_t, std::size_t> number() {
-    const auto total = [&](auto member) {
-      return std::accumulate(layers_.begin(), layers_.end(), std::int64_t{0},
-                             [&](std::int64_t sum, const Layer& layer) { return sum + layer.*member; });
-    };
-    const std::int64_t vertices = total(&Layer::vertices);
+    std::int64_t vertices = 0, triangles = 0;
+    for (Layer& layer : layers_) {
+      vertices += layer.vertices;
+      triangles += std::exchange(layer.triangles, triangles);
+    }
     if (vertices > std::numeric_limits<int>::max())
       throw std::length_error("a mesh can have at most 2147483647 vertices, this grid's has " +
                               std::to_string(vertices));
     int next = 0;
     for (Row& row : rows_)
       for (int* index : {&row.x, &row.y, &row.z}) next += std::exchange(*index, next);
-    std::int64_t next_triangle = 0;
-    for (Layer& layer : layers_) next_triangle += std::exchange(layer.triangles, next_triangle);
-    return {vertices, next_triangle};
+    return {vertices, triangles};
   }
 
   /// Pass 2: writes the layer's triangles and the vertices its cells own.
   void fill(int z, Mesh& mesh) {
-    const Layer& layer = layers_[z];
-    std::size_t cell = 0;
-    Triangle* triangle = mesh.triangles.data() + layer.triangles;
+    const std::array<Case, 256>& cases = carve::cases();
+    const std::uint32_t* cell = layers_[z].cells.data();
+    Triangle* triangle = mesh.triangles.data() + layers_[z].triangles;
+    const Row none;
     for (int y = 0; y <= size_.y(); ++y) {
       const Row& row = this->row(y, z);
-      const Row none;
+      if (row.cells == 0) continue;
       const Row& below = y > 0 ? this->row(y - 1, z) : none;
       const Row& behind = z > 0 ? this->row(y, z - 1) : none;
       const Row& both = y > 0 && z > 0 ? this->row(y - 1, z - 1) : none;
-      // Next index of each of the cell's edges along the rows; edges at the lower x are those the row has just passed.
-      int x[4] = {both.x, behind.x, below.x, row.x}, y_edges[2] = {behind.y, row.y}, z_edges[2] = {below.z, row.z};
-      for (const std::size_t end = cell + row.cells; cell < end; ++cell) {
-        const int edges[12] = {x[0],           x[1],       x[2],           x[3],        //
-                               y_edges[0] - 1, y_edges[0], y_edges[1] - 1, y_edges[1],  //
-                               z_edges[0] - 1, z_edges[0], z_edges[1] - 1, z_edges[1]};
-        const unsigned inside = layer.cases[cell];
-        const CubeCase& cube = cube_table()[inside];
-        for (int t = 0; t < cube.triangles; ++t)
-          *triangle++ = {edges[cube.edges[t][0]], edges[cube.edges[t][1]], edges[cube.edges[t][2]]};
-        place(layer.columns[cell], y, z, inside, edges, mesh);
-        const auto cut = [&](int a, int b) { return static_cast<int>((inside >> a ^ inside >> b) & 1); };
-        for (int k = 0; k < 4; ++k) x[k] += cut(2 * k, 2 * k + 1);
-        for (int k = 0; k < 2; ++k) y_edges[k] += cut(1 + 4 * k, 3 + 4 * k), z_edges[k] += cut(1 + 2 * k, 5 + 2 * k);
+      Counters next{both.x, behind.x, below.x, row.x, behind.y, row.y, below.z, row.z};
+      const RowPlaces places(grid_, crossings_, no_crossings_, y, z);
+      for (const std::uint32_t* end = cell + row.cells; cell < end; ++cell) {
+        const Case& c = cases[*cell & 0xff];
+        int vertices[kCounters + 4];
+        for (int k = 0; k < kCounters; ++k) vertices[k] = next[k];
+        for (int k = 0; k < 4; ++k) vertices[kCounters + k] = next[4 + k] - 1;
+        for (int t = 0; t < 3 * c.triangles; t += 3)
+          *triangle++ = {vertices[c.slots[t]], vertices[c.slots[t + 1]], vertices[c.slots[t + 2]]};
+
+        const int cx = static_cast<int>(*cell >> 8);
+        const bool upper = *cell >> kUpperCorner & 1;
+        if (c.step[3]) mesh.positions[next[3]] = places.x(cx, upper);
+        if (c.step[5]) mesh.positions[next[5]] = places.y(cx, upper);
+        if (c.step[7]) mesh.positions[next[7]] = places.z(cx, upper);
+        for (int k = 0; k < kCounters; ++k) next[k] += c.step[k];
       }
     }
-  }
-
-  /// Positions of the vertices on the edges the cell owns.
-  void place(int cx, int cy, int cz, unsigned inside, const int edges[12], Mesh& mesh) const {
-    const auto is_inside = [&](int corner) { return (inside >> corner & 1) != 0; };
-    const bool upper = is_inside(7);
-    Vec3 centre(cx, cy, cz);  // of the lower corner, in voxels from the grid's lower corner + 1/2
-    const auto put = [&](int axis, int edge, float a, float b) {
-      Vec3 place = centre;
-      place[axis] += share(!upper, a, b) - 1;
-      mesh.positions[edges[edge]] = grid_.low() + grid_.spacing() * (place.array() + 0.5).matrix();
-    };
-    const auto& [xy, xz, yz] = crossings_;
-    if (is_inside(6) != upper) put(0, 3, entry(xy.first, cx, cy), entry(xz.first, cx, cz));
-    if (is_inside(5) != upper) put(1, 7, entry(xy.second, cx, cy), entry(yz.first, cy, cz));
-    if (is_inside(3) != upper) put(2, 11, entry(xz.second, cx, cz), entry(yz.second, cy, cz));
-  }
-
-  static float entry(const Raster<float>& plane, int i, int j) { return plane.empty() ? 0 : plane(i, j); }
-
-  /// Where on an edge its vertex lies, from the lower centre: at the nearest crossing seen from the inside one.
-  static double share(bool lower_inside, float a, float b) {
-    const float sign = lower_inside ? 1.f : -1.f;
-    float nearest = 1;
-    for (float crossing : {sign * a, sign * b})
-      if (crossing > 0 && crossing < nearest) nearest = crossing;
-    if (nearest == 1) nearest = 0.5f;
-    return lower_inside ? nearest : 1.0 - nearest;
   }
 
   const VoxelGrid& grid_;
   const Crossings& crossings_;
   Vec3i size_;
+  int words_;  // of a row of cells
   std::vector<std::uint64_t> empty_row_;
+  std::vector<float> no_crossings_;
   std::vector<Row> rows_;
   std::vector<Layer> layers_;
 };

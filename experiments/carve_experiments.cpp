@@ -1,0 +1,182 @@
+#include <sys/resource.h>
+
+#include <cmath>
+#include <iostream>
+
+#include "apps/command_line.h"
+#include "carve/core/error.h"
+#include "carve/core/file.h"
+#include "report/table.h"
+#include "run/cell.h"
+#include "run/runner.h"
+
+namespace {
+using namespace carve;
+using namespace carve::experiments;
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::vector<fs::path> specs;
+  fs::path results = "results";
+  RunnerOptions runner;
+  std::string shard = "0/1";
+  std::string cell;
+  int threads = 1;
+};
+
+std::vector<Cell> shard_of(const std::vector<Cell>& cells, const std::string& text) {
+  int index = -1, count = 0;
+  char slash = 0, rest = 0;
+  std::istringstream in(text);
+  in >> index >> slash >> count;
+  if (!in || slash != '/' || in >> rest || count < 1 || index < 0 || index >= count)
+    throw std::invalid_argument("--shard must be I/N with 0 <= I < N, got " + text);
+  return shard(cells, index, count);
+}
+
+std::string clock_text(double seconds) {
+  const int whole = static_cast<int>(std::lround(std::max(0.0, seconds)));
+  return std::to_string(whole / 60) + ":" + (whole % 60 < 10 ? "0" : "") + std::to_string(whole % 60);
+}
+
+int plan_command(const Arguments& arguments) {
+  for (const fs::path& path : arguments.specs) {
+    const Spec spec = read_spec(path);
+    const std::vector<Cell> cells = plan(spec);
+    int todo = 0;
+    for (const Cell& cell : cells) {
+      const bool done = finished(arguments.results, cell).has_value();
+      todo += !done;
+      std::cout << (done ? "done  " : "to do ") << cell.id.substr(0, 12) << "  " << cell.path.string() << '\n';
+    }
+    std::cout << spec.name << ": " << cells.size() << " runs, " << todo << " to do\n";
+  }
+  return kDone;
+}
+
+int run_command(const Arguments& arguments) {
+  int failed = 0;
+  for (const fs::path& path : arguments.specs) {
+    const Spec spec = read_spec(path);
+    const std::vector<Cell> all = plan(spec);
+    const std::vector<Cell> cells = shard_of(all, arguments.shard);
+    fs::create_directories(arguments.results / spec.name);
+    write_file(arguments.results / spec.name / kOverviewFile,
+               [&](std::ostream& out) { out << to_json(overview(spec, all)); });
+    RunnerOptions options = arguments.runner;
+    options.seconds = spec.seconds;
+    options.megabytes = spec.megabytes;
+    const Progress end = run_all(arguments.results, spec.name, cells, options, [&](const Progress& p) {
+      std::cerr << spec.name << ": " << p.skipped + p.done + p.failed << "/" << p.total << " (" << p.failed
+                << " failed), " << clock_text(p.seconds_left) << " left  " << p.last << '\n';
+    });
+    std::cout << spec.name << ": " << end.done << " done, " << end.skipped << " were there, " << end.failed
+              << " failed\n";
+    failed += end.failed;
+    if (failed && options.fail_fast) break;
+  }
+  return failed ? kFailed : kDone;
+}
+
+int status_command(const Arguments& arguments) {
+  for (const fs::path& path : arguments.specs) {
+    const Spec spec = read_spec(path);
+    int done = 0;
+    const std::vector<Cell> cells = plan(spec);
+    std::vector<std::string> complaints;
+    std::map<std::string, std::string> status;
+    for (const Record& record : load_records(arguments.results / spec.name, complaints))
+      status[record.id] = record.status;
+    for (const Cell& cell : cells) {
+      const auto found = status.find(cell.id);
+      done += found != status.end() && found->second == "done";
+      if (found != status.end() && found->second != "done")
+        std::cout << cell.path.string() << ": " << found->second << '\n';
+    }
+    for (const std::string& complaint : complaints) std::cout << complaint << '\n';
+    std::cout << spec.name << ": " << done << " of " << cells.size() << " runs done\n";
+  }
+  return kDone;
+}
+
+// Tables read results only: the folders below the results that have an overview, or those of the named specs.
+std::vector<std::string> specs_with_results(const Arguments& arguments) {
+  if (arguments.specs.empty()) return specs_in(arguments.results);
+  std::vector<std::string> names;
+  for (const fs::path& path : arguments.specs) names.push_back(path.stem().string());
+  return names;
+}
+
+int table_command(const Arguments& arguments) {
+  for (const std::string& name : specs_with_results(arguments)) {
+    const fs::path folder = arguments.results / name;
+    std::vector<std::string> complaints;
+    const Overview overview = load_overview(folder);
+    const std::vector<Record> records = load_records(folder, complaints);
+    fs::create_directories(folder / "tables");
+    const auto write = [&](const std::string& file, const std::string& text) {
+      write_file(folder / "tables" / file, [&](std::ostream& out) { out << text; });
+    };
+    write("runs.csv", long_csv(records));
+    std::string all;
+    for (const std::string& metric : overview.metrics) {
+      const Table table = make_table(overview, records, *find_metric(metric));
+      write(metric + ".md", to_markdown(table));
+      write(metric + ".csv", to_csv(table));
+      write(metric + ".tex", to_latex(table));
+      all += to_markdown(table) + "\n";
+    }
+    for (const std::string& complaint : complaints) std::cerr << "carve-experiments: " << complaint << '\n';
+    std::cout << all;
+  }
+  return kDone;
+}
+
+int cell_command(const Arguments& arguments) {
+  // Address space, not resident memory: the only limit on memory that the kernel lets a process set for itself.
+  const auto bytes = static_cast<rlim_t>(arguments.runner.megabytes * 1e6);
+  const rlimit limit{bytes, bytes};
+  setrlimit(RLIMIT_AS, &limit);
+  const auto [spec, cell] = cell_from_argument(arguments.cell);
+  run_cell(arguments.results, spec, cell, arguments.threads);
+  return kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app("Experiments: models x methods x swept options, stated in TOML files (experiments/specs).",
+               "carve-experiments");
+  app.require_subcommand(1);
+  app.footer(
+      "Example:\n  carve-experiments run experiments/specs/accuracy.toml -o results --jobs 2\n"
+      "  carve-experiments table -o results\n"
+      "Exit codes: 0 done, 1 a run failed, 2 wrong usage or bad input.");
+  int (*command)(const Arguments&) = nullptr;
+  const auto add = [&](const char* name, const char* what, int (*function)(const Arguments&), bool needs_spec) {
+    CLI::App* sub = app.add_subcommand(name, what);
+    auto* specs = sub->add_option("specs", arguments.specs, "specs")->type_name("SPEC.toml");
+    if (needs_spec) specs->required();
+    sub->add_option("-o,--output", arguments.results, "folder of the results")
+        ->type_name("RESULTS")
+        ->capture_default_str();
+    sub->callback([&command, function] { command = function; });
+    return sub;
+  };
+  add("plan", "list the runs and whether they are done", plan_command, true);
+  CLI::App* run = add("run", "do the runs that are not done", run_command, true);
+  run->add_option("--jobs", arguments.runner.jobs, "runs at a time")->check(CLI::Range(1, 256))->capture_default_str();
+  run->add_option("--shard", arguments.shard, "do only every N-th run, from the I-th")->type_name("I/N");
+  run->add_flag("--force", arguments.runner.force, "do finished runs again");
+  run->add_flag("--fail-fast", arguments.runner.fail_fast, "start nothing more after a failure");
+  add("status", "what is done, what failed and why", status_command, true);
+  add("table", "write and print tables (Markdown, CSV, LaTeX) from results", table_command, false);
+
+  CLI::App* cell = app.add_subcommand("cell", "one run; used by run")->group("");
+  cell->add_option("cell", arguments.cell)->required();
+  cell->add_option("-o,--output", arguments.results)->required();
+  cell->add_option("--megabytes", arguments.runner.megabytes);
+  cell->callback([&] { command = cell_command; });
+  return run_program(app, argc, argv, [&] { return command(arguments); });
+}

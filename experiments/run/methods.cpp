@@ -1,0 +1,55 @@
+#include "run/methods.h"
+
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+namespace carve::experiments {
+namespace {
+
+std::map<View, Drawing> understand(const MethodInput& input) {
+  std::map<View, Drawing> drawings;
+  for (const auto& [view, picture] : input.pictures)
+    drawings.emplace(view, understand_drawing(picture, input.options.pipeline.drawing));
+  return drawings;
+}
+
+// The library's way, with all its options: every variant that options can state.
+MethodOutput carve_arm(const MethodInput& input) {
+  Reconstruction result = reconstruct(understand(input), input.options.pipeline);
+  return {std::move(result.mesh), std::move(result.times)};
+}
+
+// Two methods that fail on purpose: what a sweep does with them is tested and shown in the documentation.
+MethodOutput crash(const MethodInput&) {
+  std::raise(SIGSEGV);
+  return {};
+}
+
+MethodOutput hang(const MethodInput&) {
+  for (;;) std::this_thread::sleep_for(std::chrono::seconds(1));
+}
+
+constexpr Method kMethods[] = {
+    {"carve", "the pipeline of carve build", carve_arm},
+    {"crash", "dies of a segmentation fault: to see that a sweep survives it", crash},
+    {"hang", "never ends: to see the time limit at work", hang},
+};
+
+}  // namespace
+
+std::span<const Method> methods() { return kMethods; }
+
+const Method* find_method(const std::string& name) {
+  for (const Method& method : kMethods)
+    if (name == method.name) return &method;
+  return nullptr;
+}
+
+std::string method_names() {
+  std::string all;
+  for (const Method& method : kMethods) all += (all.empty() ? "" : ", ") + std::string(method.name);
+  return all;
+}
+
+}  // namespace carve::experiments

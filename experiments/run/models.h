@@ -1,0 +1,35 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "models/model.h"
+#include "synthesize/synthesize.h"
+
+namespace carve::experiments {
+
+/// What a run reconstructs: a base model, which is ground truth and is drawn by synthesize, or drawings made by hand,
+/// which have none.
+struct Subject {
+  std::optional<Model> model;
+  std::map<View, Picture> drawings;
+};
+
+/// Subjects are procedural models by name ("couch"), artists' models that were fetched and imported
+/// ("artist/dog_scopia", below $CARVE_ARTIST_MODELS) and hand-made drawings ("drawing/dragon", PNGs below
+/// $CARVE_DRAWINGS); experiments/reproduce makes both folders.
+std::vector<std::string> known_subjects();
+
+/// Names, globs ("stairs_*") and sets ("set:thesis": axe, dog, head, robot; "set:procedural", "set:artist",
+/// "set:drawing"). A glob, a set, or a name with a folder may match nothing: not every machine has the artists' models.
+/// \throws std::invalid_argument for a procedural model or a set that there is not
+std::vector<std::string> expand_subjects(const std::vector<std::string>& patterns);
+
+/// \throws std::invalid_argument if there is none; IoError if its files cannot be read
+Subject make_subject(const std::string& name);
+
+/// Hash of geometry, colours, textures and drawings.
+std::string content_hash(const Subject& subject);
+
+}  // namespace carve::experiments

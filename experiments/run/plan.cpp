@@ -1,0 +1,82 @@
+#include "run/plan.h"
+
+#include "run/hash.h"
+#include "run/models.h"
+
+namespace carve::experiments {
+namespace {
+
+// Every combination of the swept values, the last field fastest.
+std::vector<Settings> combinations(const Spec& spec) {
+  std::vector<Settings> all = {{}};
+  for (const auto& [field, values] : spec.sweep) {
+    std::vector<Settings> longer;
+    for (const Settings& partial : all)
+      for (const std::string& value : values) {
+        longer.push_back(partial);
+        longer.back()[field] = value;
+      }
+    all = std::move(longer);
+  }
+  return all;
+}
+
+std::string folder_of(std::string text) {
+  for (char& c : text)
+    if (c == '/') c = '_';
+  return text;
+}
+
+}  // namespace
+
+std::vector<Cell> plan(const Spec& spec) {
+  std::vector<Cell> cells;
+  const std::vector<Settings> sweeps = combinations(spec);
+  for (const std::string& model : expand_subjects(spec.models)) {
+    const std::string content = content_hash(make_subject(model));
+    for (const Settings& swept : sweeps)
+      for (const MethodSpec& method : spec.methods)
+        for (const unsigned seed : spec.seeds) {
+          Cell cell{.model = model, .method = method.name, .arm = method.arm, .swept = swept, .seed = seed};
+          cell.settings = spec.options;
+          for (const Settings& over : {method.settings, swept})
+            for (const auto& [field, value] : over) cell.settings[field] = value;
+          cell.path = std::filesystem::path(spec.name) / folder_of(model) / folder_of(method.name);
+          if (!swept.empty()) cell.path /= folder_of(text_of(swept));
+          cell.path /= "seed=" + std::to_string(seed);
+          cell.id = Hash()
+                        .add(program_hash())
+                        .add(content)
+                        .add(method.arm)
+                        .add(text_of(cell.settings))
+                        .add(std::to_string(seed))
+                        .hex();
+          cells.push_back(std::move(cell));
+        }
+  }
+  return cells;
+}
+
+Overview overview(const Spec& spec, const std::vector<Cell>& cells) {
+  Overview o{.spec = spec.name,
+             .title = spec.title,
+             .baseline = spec.baseline,
+             .models = expand_subjects(spec.models),
+             .methods = {},
+             .metrics = spec.metrics,
+             .sweep = {},
+             .heat_map_models = expand_subjects(spec.heat_map_models),
+             .heat_map_range = spec.heat_map_range,
+             .runs = static_cast<int>(cells.size())};
+  for (const MethodSpec& method : spec.methods) o.methods.push_back(method.name);
+  for (const auto& [field, values] : spec.sweep) o.sweep.push_back(field);
+  return o;
+}
+
+std::vector<Cell> shard(const std::vector<Cell>& cells, int index, int count) {
+  std::vector<Cell> part;
+  for (std::size_t i = index; i < cells.size(); i += count) part.push_back(cells[i]);
+  return part;
+}
+
+}  // namespace carve::experiments

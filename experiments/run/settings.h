@@ -1,0 +1,27 @@
+#pragma once
+#include "carve/core/options.h"
+#include "carve/pipeline/reconstruct.h"
+#include "eval/scores.h"
+#include "run/spec.h"
+#include "synthesize/synthesize.h"
+
+namespace carve::experiments {
+
+/// Every option that a spec may set: the pipeline's as in carve build, "synthesize.*", "degrade.*" and "evaluate.*".
+struct RunOptions {
+  PipelineOptions pipeline;
+  SynthesizeOptions synthesize;
+  DegradeOptions degrade;  // its seed is the run's
+  eval::ScoreOptions evaluate;
+};
+
+std::vector<Field> fields(RunOptions& options);
+
+/// \throws std::invalid_argument naming field, range and value
+void apply(RunOptions& options, const Settings& settings);
+
+/// The value that switches a field's part of the method off ("none", "off", 0). \throws std::invalid_argument if it has
+/// none
+std::string switched_off(const std::string& field);
+
+}  // namespace carve::experiments

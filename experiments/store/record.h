@@ -1,0 +1,51 @@
+#pragma once
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace carve::experiments {
+
+/// Field name -> value as text, e.g. {"smooth.steps", "4"}; names and ranges are those of run/settings.h.
+using Settings = std::map<std::string, std::string>;
+
+/// "a=1,b=2"
+std::string text_of(const Settings& settings);
+
+/// What a run left in its folder (run.json).
+struct Record {
+  std::string id = {}, spec = {}, model = {}, method = {}, arm = {};
+  std::string status = {};  // "done", or why there is no result
+  Settings swept = {}, settings = {};
+  unsigned seed = 1;
+  std::map<std::string, double> metrics = {};          // store/metrics.h
+  std::map<std::string, std::string> provenance = {};  // commit, compiler, libraries, CPU
+  std::string folder = {};                             // where it was read from, relative to the results; not stored
+  bool done() const { return status == "done"; }
+};
+
+/// What a spec's results are about (overview.json beside its runs), so that tables and plots need nothing else.
+struct Overview {
+  std::string spec, title, baseline;
+  std::vector<std::string> models, methods, metrics, sweep, heat_map_models;  // in the spec's order
+  double heat_map_range = 2;
+  int runs = 0;
+};
+
+inline constexpr const char* kRecordFile = "run.json";
+inline constexpr const char* kOverviewFile = "overview.json";
+
+std::string to_json(const Record& record);
+std::string to_json(const Overview& overview);
+/// \throws IoError naming `path`
+Record record_from_json(const std::string& json, const std::string& path);
+Overview overview_from_json(const std::string& json, const std::string& path);
+
+/// All records below a spec's folder, sorted by path; what cannot be read is told in `complaints`.
+std::vector<Record> load_records(const std::filesystem::path& folder, std::vector<std::string>& complaints);
+Overview load_overview(const std::filesystem::path& folder);
+
+/// The specs that have results below a folder, by name.
+std::vector<std::string> specs_in(const std::filesystem::path& results);
+
+}  // namespace carve::experiments

@@ -1,0 +1,78 @@
+// Carving and surface extraction: drawings of 512 x 512 pixels, grids of 256 to 2048 voxels.
+#include <benchmark/benchmark.h>
+
+#include <map>
+
+#include "carve/carving/carve_silhouettes.h"
+#include "carve/core/parallel.h"
+#include "carve/surface/crossings.h"
+#include "carve/surface/marching_cubes.h"
+#include "shapes.h"
+
+namespace carve {
+namespace {
+
+const ViewSet& ball_views() {
+  static const ViewSet views = aligned(ball(), kThreeViews, {.pixels = 506, .margin = 3});
+  return views;
+}
+
+const Carving& ball_carving(int grid) {
+  static std::map<int, Carving> carvings;
+  auto found = carvings.find(grid);
+  if (found == carvings.end()) found = carvings.emplace(grid, carve_silhouettes(ball_views(), {.grid = grid})).first;
+  return found->second;
+}
+
+/// The work under test on 1 or 2 threads (the second argument), the clock being the wall's.
+template <class Work>
+void measure(benchmark::State& state, Work&& work) {
+  set_thread_count(static_cast<int>(state.range(1)));
+  for (auto _ : state) benchmark::DoNotOptimize(work(static_cast<int>(state.range(0))));
+  set_thread_count(0);
+}
+
+void BM_PatchLabels(benchmark::State& state) {
+  const VoxelGrid grid = grid_over(ball_views().low(), ball_views().high(), static_cast<int>(state.range(0)));
+  measure(state, [&](int) {
+    std::vector<PatchLabels> labels;
+    for (const AlignedView& view : ball_views().views) labels.push_back(patch_labels(view, grid));
+    return labels;
+  });
+}
+
+void BM_CarveSilhouettes(benchmark::State& state) {
+  measure(state, [](int grid) { return carve_silhouettes(ball_views(), {.grid = grid}); });
+}
+
+void BM_ContourCrossings(benchmark::State& state) {
+  const VoxelGrid& grid = ball_carving(static_cast<int>(state.range(0))).grid;
+  measure(state, [&](int) { return contour_crossings(ball_views(), grid); });
+}
+
+void BM_MarchingCubes(benchmark::State& state) {
+  const VoxelGrid& grid = ball_carving(static_cast<int>(state.range(0))).grid;
+  const Crossings crossings = contour_crossings(ball_views(), grid);
+  measure(state, [&](int) {
+    Mesh mesh = marching_cubes(grid, crossings);
+    state.counters["triangles"] = static_cast<double>(mesh.triangles.size());
+    return mesh;
+  });
+}
+
+void BM_Whole(benchmark::State& state) {
+  measure(state, [](int grid) {
+    const Carving carving = carve_silhouettes(ball_views(), {.grid = grid});
+    return marching_cubes(carving.grid, contour_crossings(ball_views(), carving.grid));
+  });
+}
+
+constexpr auto kUnit = benchmark::kMillisecond;
+BENCHMARK(BM_PatchLabels)->ArgsProduct({{256, 512, 1024}, {1, 2}})->Unit(kUnit)->UseRealTime();
+BENCHMARK(BM_CarveSilhouettes)->ArgsProduct({{256, 512, 1024}, {1, 2}})->Unit(kUnit)->UseRealTime();
+BENCHMARK(BM_ContourCrossings)->ArgsProduct({{256, 512}, {1, 2}})->Unit(kUnit)->UseRealTime();
+BENCHMARK(BM_MarchingCubes)->ArgsProduct({{256, 512}, {1, 2}})->Unit(kUnit)->UseRealTime();
+BENCHMARK(BM_Whole)->ArgsProduct({{2048}, {1, 2}})->Unit(kUnit)->UseRealTime()->Iterations(1);
+
+}  // namespace
+}  // namespace carve
