@@ -48,10 +48,15 @@ void write_mesh(const fs::path& path, const Mesh& mesh, const WriteOptions& opti
   write_file(path, [&](std::ostream& out) { format->write(out, mesh); });
 }
 
-Mesh read_mesh(const fs::path& path) {
+Mesh formats::read(const fs::path& path, std::string_view bytes) {
   const Format* format = format_of(path);
   if (!format) throw IoError(path.string(), unknown_ending(path));
-  return format->read(path.string(), read_file(path));
+  return format->read(path.string(), bytes);
+}
+
+Mesh read_mesh(const fs::path& path) {
+  if (!format_of(path)) throw IoError(path.string(), unknown_ending(path));
+  return formats::read(path, read_file(path));
 }
 
 }  // namespace carve

@@ -3,6 +3,7 @@
 #include <ostream>
 
 #include "carve/mesh/formats.h"
+#include "carve/mesh/text_reader.h"
 
 namespace carve::formats {
 namespace {

@@ -32,6 +32,8 @@ PlyElement read_element(TextReader& text, const PlyHeader& header) {
   if (error != std::errc() || stop != count.data() + count.size())
     text.fail("element " + excerpt(name) + ": the count must be a whole number from 0, got " + excerpt(count));
   if (name == "tristrips") text.fail("element tristrips is not supported; store faces");
+  constexpr std::size_t kMost = 256;
+  if (header.elements.size() == kMost) text.fail("the header must have at most 256 elements");
   for (const PlyElement& other : header.elements)
     if (other.name == name) text.fail("element " + excerpt(name) + " stands there twice");
   return element;
@@ -88,7 +90,6 @@ PlyHeader read_header(TextReader& text) {
   text.fail("the file ends before its end_header");
 }
 
-// Refuses counts that the file cannot hold, before anything is allocated for them.
 void check_counts(const std::string& path, const PlyHeader& header, std::size_t bytes) {
   for (const PlyElement& element : header.elements) {
     std::size_t shortest = 0;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "carve/mesh/formats.h"
+#include "carve/mesh/text_reader.h"
 
 namespace carve::formats {
 

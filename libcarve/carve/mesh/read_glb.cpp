@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "carve/mesh/formats.h"
 
@@ -11,6 +12,10 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::uint32_t kMagic = 0x46546c67, kJsonChunk = 0x4e4f534a, kBinaryChunk = 0x004e4942;
+constexpr std::size_t kLongestJson = std::size_t{1} << 26;  // parsed, it takes many times its size
+// What a scene may have. Its nodes can show one mesh often, so the file's size does not bound it.
+constexpr std::size_t kMost = std::size_t{1} << 26;  // vertices or triangles, unless the file itself holds more
+constexpr std::size_t kMostPrimitives = std::size_t{1} << 20;
 enum Component { kUnsignedByte = 5121, kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126 };
 enum Mode { kTriangles = 4, kStrip = 5, kFan = 6 };
 
@@ -36,9 +41,12 @@ class GlbReader {
     read_chunks();
     try {
       refuse_extensions();
-      for (const std::size_t root : roots()) read_tree(root);
+      visited_.resize(list(json_, "nodes").size());
+      for (const std::size_t root : roots()) walk(root);
+      check_size();
+      for (const auto& [primitive, place] : placed_) read_primitive(*primitive, place);
     } catch (const Json::exception& error) {
-      fail(std::string("glTF JSON: ") + error.what());
+      fail("glTF JSON: " + excerpt(error.what(), 160));
     }
     return std::move(mesh_);
   }
@@ -62,6 +70,9 @@ class GlbReader {
       if (size > bytes_.size() - at)
         fail("a chunk declares " + std::to_string(size) + " bytes, the file has " + std::to_string(bytes_.size() - at) +
              " left");
+      if (kind == kJsonChunk && size > kLongestJson)
+        fail("the JSON chunk must have at most " + std::to_string(kLongestJson) + " bytes, got " +
+             std::to_string(size));
       if (kind == kJsonChunk && text.empty()) text = bytes_.substr(at, size);
       if (kind == kBinaryChunk && binary_.empty()) binary_ = bytes_.substr(at, size);
       at += size;
@@ -69,34 +80,42 @@ class GlbReader {
     try {
       json_ = Json::parse(text);
     } catch (const Json::exception& error) {
-      fail(std::string("glTF JSON: ") + error.what());
+      fail("glTF JSON: " + excerpt(error.what(), 160));
     }
     if (!json_.is_object()) fail("glTF JSON: must be an object");
   }
 
   // Extensions without which the geometry would be read wrong.
   void refuse_extensions() const {
-    if (!json_.contains("extensionsRequired")) return;
-    for (const Json& extension : json_.at("extensionsRequired")) {
+    for (const Json& extension : list(json_, "extensionsRequired")) {
       const std::string name = extension.get<std::string>();
       if (name == "KHR_draco_mesh_compression" || name == "EXT_meshopt_compression" || name == "KHR_mesh_quantization")
         fail("needs the glTF extension " + name + ", which is not supported");
     }
   }
 
-  // A whole number from 0, or the default where there is none.
-  std::size_t whole(const Json& object, const char* key, std::optional<std::size_t> otherwise = {}) const {
-    if (otherwise && !object.contains(key)) return *otherwise;
-    const Json& value = object.at(key);
+  // Values are never copied or printed whole: a hostile file nests them deeper than the stack.
+  std::size_t whole(const Json& value, const char* name) const {
     if (!value.is_number_unsigned())
-      fail(std::string(key) + " must be a whole number from 0, got " + excerpt(value.dump()));
+      fail(std::string(name) + " must be a whole number from 0, got " +
+           (value.is_number() ? value.dump() : value.type_name()));
     return value.get<std::size_t>();
+  }
+  std::size_t member(const Json& object, const char* key, std::optional<std::size_t> otherwise = {}) const {
+    return otherwise && !object.contains(key) ? *otherwise : whole(object.at(key), key);
+  }
+
+  // An array, empty where there is none.
+  const Json& list(const Json& object, const char* key) const {
+    static const Json none = Json::array();
+    if (!object.contains(key)) return none;
+    if (!object.at(key).is_array()) fail(std::string(key) + " must be an array, got " + object.at(key).type_name());
+    return object.at(key);
   }
 
   const Json& item(const char* array, std::size_t index) const {
-    const Json& items = json_.at(array);
-    if (!items.is_array() || index >= items.size())
-      fail(std::string(array) + "[" + std::to_string(index) + "] does not exist");
+    const Json& items = list(json_, array);
+    if (index >= items.size()) fail(std::string(array) + "[" + std::to_string(index) + "] does not exist");
     return items[index];
   }
 
@@ -104,36 +123,70 @@ class GlbReader {
   std::vector<std::size_t> roots() const {
     std::vector<std::size_t> all;
     if (json_.contains("scenes")) {
-      const Json& scene = item("scenes", whole(json_, "scene", 0));
-      for (const Json& node : scene.value("nodes", Json::array())) all.push_back(node.get<std::size_t>());
+      for (const Json& node : list(item("scenes", member(json_, "scene", 0)), "nodes"))
+        all.push_back(whole(node, "a scene's node"));
       return all;
     }
-    const Json nodes = json_.value("nodes", Json::array());
-    std::vector<bool> is_child(nodes.size());
-    for (const Json& node : nodes)
-      for (const Json& child : node.value("children", Json::array()))
-        if (child.get<std::size_t>() < nodes.size()) is_child[child.get<std::size_t>()] = true;
-    for (std::size_t i = 0; i < nodes.size(); ++i)
+    std::vector<bool> is_child(visited_.size());
+    for (const Json& node : list(json_, "nodes"))
+      for (const Json& child : list(node, "children")) {
+        const std::size_t index = whole(child, "a node's child");
+        if (index < is_child.size()) is_child[index] = true;
+      }
+    for (std::size_t i = 0; i < is_child.size(); ++i)
       if (!is_child[i]) all.push_back(i);
     return all;
   }
 
-  void read_tree(std::size_t root) {
+  // Lists the primitives below a node.
+  void walk(std::size_t root) {
     std::vector<std::pair<std::size_t, Eigen::Affine3d>> open{{root, Eigen::Affine3d::Identity()}};
     while (!open.empty()) {
       const auto [index, above] = open.back();
       open.pop_back();
       const Json& node = item("nodes", index);
-      visited_.resize(json_.at("nodes").size());
       if (visited_[index]) fail("nodes[" + std::to_string(index) + "] has two parents");
       visited_[index] = true;
       const Eigen::Affine3d place = above * transform(node);
-      if (node.contains("mesh")) read_mesh(whole(node, "mesh"), place);
-      const Json children = node.value("children", Json::array());
+      if (node.contains("mesh"))
+        for (const Json& primitive : list(item("meshes", member(node, "mesh")), "primitives"))
+          place_primitive(primitive, place);
+      const Json& children = list(node, "children");
       for (auto child = children.rbegin(); child != children.rend(); ++child)
-        open.emplace_back(child->get<std::size_t>(), place);
+        open.emplace_back(whole(*child, "a node's child"), place);
     }
   }
+
+  void place_primitive(const Json& primitive, const Eigen::Affine3d& place) {
+    if (++primitives_ > kMostPrimitives)
+      fail("the scene must have at most " + std::to_string(kMostPrimitives) + " primitives");
+    const std::size_t mode = member(primitive, "mode", kTriangles);
+    if (mode > kFan) fail("a primitive's mode must be in [0, 6], got " + std::to_string(mode));
+    const bool has_triangles = mode >= kTriangles && primitive.at("attributes").contains("POSITION");
+    if (has_triangles) placed_.emplace_back(&primitive, place);
+  }
+
+  // Before memory is filled.
+  void check_size() {
+    const std::size_t most = std::max(kMost, bytes_.size() / sizeof(Triangle));
+    std::size_t vertices = 0, corners = 0;
+    for (const auto& [primitive, place] : placed_) {
+      const std::size_t count = positions(*primitive).count;
+      vertices += count;
+      corners += primitive->contains("indices") ? indices(*primitive).count : count;
+      if (vertices > most || corners > 3 * most)
+        fail("the scene must have at most " + std::to_string(most) + " vertices or triangles");
+    }
+    mesh_.positions.reserve(vertices);
+    mesh_.triangles.reserve(corners / 3);
+  }
+
+  Accessor positions(const Json& primitive) const {
+    const Accessor result = accessor(member(primitive.at("attributes"), "POSITION"), "VEC3");
+    if (result.component != kFloat) fail("POSITION must be of floats");
+    return result;
+  }
+  Accessor indices(const Json& primitive) const { return accessor(member(primitive, "indices"), "SCALAR"); }
 
   Eigen::Affine3d transform(const Json& node) const {
     Eigen::Affine3d place = Eigen::Affine3d::Identity();
@@ -151,25 +204,8 @@ class GlbReader {
     return place;
   }
 
-  void read_mesh(std::size_t index, const Eigen::Affine3d& place) {
-    for (const Json& primitive : item("meshes", index).at("primitives")) {
-      const std::size_t mode = whole(primitive, "mode", kTriangles);
-      if (mode < kTriangles) continue;  // points and lines
-      if (mode > kFan) fail("a primitive's mode must be in [0, 6], got " + std::to_string(mode));
-      read_primitive(primitive, static_cast<Mode>(mode), place);
-    }
-  }
-
-  void read_primitive(const Json& primitive, Mode mode, const Eigen::Affine3d& place) {
-    const Json& attributes = primitive.at("attributes");
-    if (!attributes.contains("POSITION")) return;
-    const Accessor positions = accessor(whole(attributes, "POSITION"), "VEC3");
-    if (positions.component != kFloat) fail("POSITION must be of floats");
-    // A file may show one mesh in many places: what is made of it stays within bounds.
-    constexpr std::size_t kMost = std::size_t{1} << 27;
-    if (mesh_.positions.size() + positions.count > std::max(kMost, bytes_.size()) ||
-        mesh_.triangles.size() > std::max(kMost, bytes_.size()))
-      fail("the scene has more than " + std::to_string(kMost) + " vertices or triangles");
+  void read_primitive(const Json& primitive, const Eigen::Affine3d& place) {
+    const Accessor positions = this->positions(primitive);
     const int base = static_cast<int>(mesh_.positions.size());
     for (std::size_t i = 0; i < positions.count; ++i) {
       const std::size_t at = positions.begin + i * positions.stride;
@@ -179,7 +215,8 @@ class GlbReader {
       if (!world.allFinite()) fail("POSITION " + std::to_string(i) + " must be finite");
       mesh_.positions.push_back(world);
     }
-    add_triangles(corners(primitive, positions.count), mode, base, place.linear().determinant() < 0);
+    add_triangles(corners(primitive, positions.count), static_cast<Mode>(member(primitive, "mode", kTriangles)), base,
+                  place.linear().determinant() < 0);
   }
 
   std::vector<int> corners(const Json& primitive, std::size_t vertices) const {
@@ -188,7 +225,7 @@ class GlbReader {
       for (std::size_t i = 0; i < vertices; ++i) all.push_back(static_cast<int>(i));
       return all;
     }
-    const Accessor indices = accessor(whole(primitive, "indices"), "SCALAR");
+    const Accessor indices = this->indices(primitive);
     all.reserve(indices.count);
     for (std::size_t i = 0; i < indices.count; ++i) {
       const std::size_t at = indices.begin + i * indices.stride;
@@ -221,11 +258,11 @@ class GlbReader {
     if (json.at("type").get<std::string>() != type) fail(name + " must be of type " + type);
     if (!json.contains("bufferView") || json.contains("sparse"))
       fail(name + " is sparse or compressed, which is not supported");
-    const Json& view = item("bufferViews", whole(json, "bufferView"));
-    const std::size_t buffer = whole(view, "buffer");
+    const Json& view = item("bufferViews", member(json, "bufferView"));
+    const std::size_t buffer = member(view, "buffer");
     if (buffer != 0 || item("buffers", buffer).contains("uri"))
       fail(name + " lies outside the file's binary chunk, which is not supported");
-    const int component = static_cast<int>(whole(json, "componentType"));
+    const int component = static_cast<int>(member(json, "componentType"));
     const std::size_t size = component == kUnsignedByte                         ? 1
                              : component == kUnsignedShort                      ? 2
                              : component == kUnsignedInt || component == kFloat ? 4
@@ -233,9 +270,9 @@ class GlbReader {
     if (size == 0 || (type == "SCALAR" && component == kFloat))
       fail(name + ": componentType " + std::to_string(component) + " is not supported");
     const std::size_t element = size * (type == "VEC3" ? 3 : 1);
-    Accessor result{binary_, whole(json, "byteOffset", 0), whole(view, "byteStride", element), whole(json, "count"),
+    Accessor result{binary_, member(json, "byteOffset", 0), member(view, "byteStride", element), member(json, "count"),
                     component};
-    const std::size_t view_begin = whole(view, "byteOffset", 0), view_size = whole(view, "byteLength");
+    const std::size_t view_begin = member(view, "byteOffset", 0), view_size = member(view, "byteLength");
     const bool inside = view_begin <= binary_.size() && view_size <= binary_.size() - view_begin &&
                         result.begin <= view_size && result.stride >= element && result.stride <= 252 + element;
     const std::size_t room = inside ? view_size - result.begin : 0;
@@ -248,7 +285,9 @@ class GlbReader {
   const std::string& path_;
   std::string_view bytes_, binary_;
   Json json_;
-  std::vector<bool> visited_;
+  std::vector<bool> visited_;  // nodes
+  std::size_t primitives_ = 0;
+  std::vector<std::pair<const Json*, Eigen::Affine3d>> placed_ = {};  // the scene's primitives of triangles
   Mesh mesh_;
 };
 

@@ -114,7 +114,7 @@ class BodyReader {
           read_other(element, corners, i);
       }
     } catch (const EndOfFile&) {
-      throw IoError(path_, ends_at(element.name, i, element.count));
+      throw IoError(path_, ends_at(excerpt(element.name), i, element.count));
     }
   }
 
@@ -195,7 +195,8 @@ class BodyReader {
 
   [[noreturn]] void fail(const PlyElement& element, std::size_t index, const PlyProperty& property,
                          const std::string& why) {
-    throw IoError(path_, element.name + " " + std::to_string(index) + ": " + property.name + " " + why);
+    throw IoError(path_,
+                  excerpt(element.name) + " " + std::to_string(index) + ": " + excerpt(property.name) + " " + why);
   }
 
   const std::string& path_;

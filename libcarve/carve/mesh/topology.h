@@ -29,7 +29,7 @@ struct Topology {
   bool solid() const { return closed() && manifold() && oriented(); }
 };
 
-/// The same value, to the last bit, whatever the thread count. Memory beside the mesh: 12 bytes a triangle, 8 a vertex.
+/// The same value, to the last bit, whatever the thread count. Memory beside the mesh: 12 bytes a triangle, 4 a vertex.
 /// \throws std::invalid_argument if an index is out of range or a coordinate is not finite
 Topology topology(const Mesh& mesh);
 std::ostream& operator<<(std::ostream& out, const Topology& topology);  // one aligned line a field
