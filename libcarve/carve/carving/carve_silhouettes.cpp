@@ -1,6 +1,8 @@
 #include "carve/carving/carve_silhouettes.h"
 
+#include <algorithm>
 #include <atomic>
+#include <string>
 
 #include "carve/core/error.h"
 #include "carve/core/options.h"
@@ -22,13 +24,19 @@ class Planes {
 
   void intersect(const PatchLabels& mask) {
     const ShadowLayout layout(size_, mask.view);
-    for (int j = 0; j < layout.height; ++j) {
-      const int up = layout.up_index(j);
-      if (layout.frame.toward.axis == 0)
-        for (int i = 0; i < layout.width; ++i) zy_[layout.right_index(i) * size_.y() + up] &= mask.inside(i, j);
-      else
-        (layout.frame.toward.axis == 2 ? xy_ : xz_).intersect(up, layout, &mask.inside(0, j));
-    }
+    if (layout.frame.toward.axis == 0) return intersect_side(mask.inside, layout);
+    BitPlane& plane = layout.frame.toward.axis == 2 ? xy_ : xz_;
+    parallel_ranges(0, layout.height, 64, [&](int first, int last) {
+      std::vector<std::uint8_t> bytes(64 * static_cast<std::size_t>(words_), 0);
+      for (int j = first; j < last; ++j) {
+        const std::uint8_t* inside = &mask.inside(0, j);
+        if (layout.frame.right.sign > 0)
+          std::copy_n(inside, layout.width, bytes.begin());
+        else
+          std::reverse_copy(inside, inside + layout.width, bytes.begin());
+        for (int w = 0; w < words_; ++w) plane.row(layout.up_index(j))[w] &= packed(bytes.data() + 64 * w);
+      }
+    });
   }
 
   /// A row along x is the front's row and the top's row where the side shows the row, else nothing.
@@ -49,19 +57,30 @@ class Planes {
     BitPlane(const std::vector<std::uint64_t>& ones, int rows, int words) : words_per_row(words) {
       for (int j = 0; j < rows; ++j) words_.insert(words_.end(), ones.begin(), ones.end());
     }
-    void intersect(int up, const ShadowLayout& layout, const std::uint8_t* inside) {
-      std::uint64_t* row = words_.data() + static_cast<std::size_t>(up) * words_per_row;
-      for (int w = 0; w < words_per_row; ++w) {
-        std::uint64_t word = 0;
-        const int bits = std::min(64, layout.width - 64 * w);
-        for (int b = 0; b < bits; ++b) word |= std::uint64_t{inside[layout.right_index(64 * w + b)]} << b;
-        row[w] &= word;
-      }
-    }
+    std::uint64_t* row(int up) { return words_.data() + static_cast<std::size_t>(up) * words_per_row; }
     const std::uint64_t* row(int up) const { return words_.data() + static_cast<std::size_t>(up) * words_per_row; }
     int words_per_row;
     std::vector<std::uint64_t> words_;
   };
+
+  /// 64 bytes of 0 or 1 as bits: the product moves the low bits of eight bytes into its top byte.
+  static std::uint64_t packed(const std::uint8_t* bytes) {
+    std::uint64_t word = 0;
+    for (int k = 0; k < 8; ++k) {
+      std::uint64_t eight = 0;
+      for (int b = 0; b < 8; ++b) eight |= std::uint64_t{bytes[8 * k + b]} << 8 * b;
+      word |= (eight * 0x0102040810204080u >> 56) << 8 * k;
+    }
+    return word;
+  }
+
+  void intersect_side(const Mask& inside, const ShadowLayout& layout) {
+    parallel_ranges(0, layout.width, 64, [&](int first, int last) {
+      for (int j = 0; j < layout.height; ++j)
+        for (int i = first; i < last; ++i)
+          zy_[static_cast<std::size_t>(layout.right_index(i)) * size_.y() + layout.up_index(j)] &= inside(i, j);
+    });
+  }
 
   std::vector<std::uint64_t> row_of_ones() const {
     std::vector<std::uint64_t> row(words_, ~std::uint64_t{0});

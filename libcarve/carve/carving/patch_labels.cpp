@@ -6,6 +6,7 @@
 
 #include "carve/core/parallel.h"
 #include "carve/grid/shadow.h"
+#include "carve/image/outline.h"
 
 namespace carve {
 namespace {
@@ -16,91 +17,134 @@ struct Interval {
   bool operator==(const Interval&) const = default;
 };
 
-/// Of one patch along one side.
-struct Extent {
-  Interval patch;   // pixels whose centres lie in the patch; if there are none, those at its centre
-  Interval centre;  // the pixel at the patch's centre; two if the centre lies between them
-  bool operator==(const Extent&) const = default;
-};
-
 /// The pixels whose centres lie in [low, high]. Ends are taken with a tolerance, so that a mirrored drawing gives the
 /// mirrored result where a patch ends on a pixel's centre.
 Interval pixels_between(double low, double high, int pixels) {
-  constexpr double tolerance = 1e-6;
   const auto clamped = [&](double x) { return static_cast<int>(std::clamp<double>(x, 0, pixels)); };
-  const int first = clamped(std::ceil(low - 0.5 - tolerance)), last = clamped(std::floor(high - 0.5 + tolerance) + 1);
+  const int first = clamped(std::ceil(low - 0.5 - kOutlineTolerance));
+  const int last = clamped(std::floor(high - 0.5 + kOutlineTolerance) + 1);
   return first < last ? Interval{first, last} : Interval{};
 }
 
-/// \param start, step  pixel coordinate of the first patch's lower end, and the patches' (signed) width
-std::vector<Extent> extents(int patches, double start, double step, int pixels) {
-  std::vector<Extent> result(patches);
-  for (int i = 0; i < patches; ++i) {
-    const double a = start + step * i, b = start + step * (i + 1), centre = start + step * (i + 0.5);
-    result[i].centre = pixels_between(centre - 0.5, centre + 0.5, pixels);
-    result[i].patch = pixels_between(std::min(a, b), std::max(a, b), pixels);
-    if (result[i].patch == Interval{}) result[i].patch = result[i].centre;
+/// The patches along one side of the drawing.
+struct Side {
+  std::vector<double> centre;    // pixel coordinates
+  std::vector<Interval> patch;   // pixels whose centres lie in the patch; if there are none, those at its centre
+  std::vector<Interval> middle;  // the pixel at the patch's centre; two if the centre lies between them
+
+  /// \param start, step  pixel coordinate of the first patch's lower end, and the patches' (signed) width
+  Side(int patches, double start, double step, int pixels) {
+    for (int i = 0; i < patches; ++i) {
+      const double a = start + step * i, b = start + step * (i + 1);
+      centre.push_back(start + step * (i + 0.5));
+      middle.push_back(pixels_between(centre[i] - 0.5, centre[i] + 0.5, pixels));
+      patch.push_back(pixels_between(std::min(a, b), std::max(a, b), pixels));
+      if (patch[i] == Interval{}) patch[i] = middle[i];
+    }
   }
-  return result;
-}
+};
+
+/// Bits of the pixels in a row of patches, or-ed: first down, then across.
+class Gather {
+ public:
+  /// \param outside  the bits outside of the drawing
+  Gather(const std::vector<Interval>& columns, int pixels, std::uint8_t outside)
+      : columns_(columns), line_(pixels + 1), outside_(outside) {
+    for (const Interval& column : columns) {
+      widest_ = std::max(widest_, column.last - column.first);
+      first_.push_back(column == Interval{} ? pixels : column.first);
+      last_.push_back(column == Interval{} ? pixels : column.last - 1);
+    }
+  }
+
+  template <class T, class Bits>
+  void operator()(const Raster<T>& pixels, Bits bits, const Interval& rows, std::uint8_t* out) {
+    std::ranges::fill(line_, rows == Interval{} ? outside_ : std::uint8_t{0});
+    line_[pixels.width] = outside_;
+    for (int y = rows.first; y < rows.last; ++y) {
+      const T* values = &pixels(0, y);
+      for (int x = 0; x < pixels.width; ++x) line_[x] |= bits(values[x]);
+    }
+    const int count = static_cast<int>(columns_.size());
+    for (int i = 0; i < count; ++i) out[i] = line_[first_[i]] | line_[last_[i]];
+    if (widest_ <= 2) return;
+    for (int i = 0; i < count; ++i)
+      for (int x = columns_[i].first + 1; x < columns_[i].last - 1; ++x) out[i] |= line_[x];
+  }
+
+ private:
+  const std::vector<Interval>& columns_;
+  std::vector<std::uint8_t> line_;  // one entry more than a row of pixels: the outside
+  std::vector<int> first_, last_;
+  int widest_ = 0;
+  std::uint8_t outside_;
+};
 
 class Projection {
  public:
-  Projection(const AlignedView& view, const VoxelGrid& grid, Patch patch)
-      : labels_(view.drawing.labels), layout_(grid.size(), view.view), patch_(patch) {
-    const auto [right, up, toward] = layout_.frame;
-    const double left = right.sign > 0 ? 0 : layout_.width, top = up.sign > 0 ? layout_.height : 0;
-    columns_ = extents(layout_.width, view.column(grid.low()[right.axis] + grid.spacing() * left),
-                       view.column_per_unit * grid.spacing() * right.sign, labels_.width);
-    rows_ = extents(layout_.height, view.row(grid.low()[up.axis] + grid.spacing() * top),
-                    -view.row_per_unit * grid.spacing() * up.sign, labels_.height);
-  }
+  Projection(const AlignedView& view, const ShadowLayout& layout, const VoxelGrid& grid, Patch patch)
+      : drawing_(view.drawing),
+        outline_(view.drawing.coverage),
+        patch_(patch),
+        columns_(layout.width, view.column(low_end(grid, layout.frame.right, layout.width)),
+                 view.column_per_unit * grid.spacing() * layout.frame.right.sign, drawing_.labels.width),
+        rows_(layout.height, view.row(high_end(grid, layout.frame.up, layout.height)),
+              -view.row_per_unit * grid.spacing() * layout.frame.up.sign, drawing_.labels.height) {}
 
   void rows(int first, int last, PatchLabels& out) const {
-    std::vector<std::uint8_t> line(labels_.width);
-    const int width = layout_.width;
+    const int width = out.labels.width, pixels = drawing_.labels.width;
+    Gather gather_labels(columns_.patch, pixels, kBackground), gather_cover(columns_.middle, pixels, 0);
+    std::vector<std::uint8_t> middle(width);
+    std::vector<int> partly;  // columns whose middle pixels are covered in part
     for (int j = first; j < last; ++j) {
-      std::uint8_t* labels = &out.labels(0, j);
-      std::uint8_t* inside = &out.inside(0, j);
-      if (j > first && rows_[j] == rows_[j - 1]) {  // a grid finer than the drawing repeats rows
+      std::uint8_t *labels = &out.labels(0, j), *inside = &out.inside(0, j);
+      if (j > first && rows_.patch[j] == rows_.patch[j - 1])  // a grid finer than the drawing repeats rows
         std::memcpy(labels, labels - width, width);
-        std::memcpy(inside, inside - width, width);
-        continue;
+      else
+        gather_labels(drawing_.labels, label_bit, rows_.patch[j], labels);
+
+      if (j == first || rows_.middle[j] != rows_.middle[j - 1]) {
+        gather_cover(drawing_.coverage, cover_bit, rows_.middle[j], middle.data());
+        partly.clear();
+        for (int i = 0; i < width; ++i)
+          if (middle[i] == kPartly) partly.push_back(i);
       }
-      if (patch_ == Patch::centre) {
-        gather(rows_[j].centre, &Extent::centre, line, inside);
-        for (int i = 0; i < width; ++i) inside[i] = (inside[i] & (kSurface | kEdge)) != 0;
-      }
-      gather(rows_[j].patch, &Extent::patch, line, labels);
-      if (patch_ == Patch::any)
-        for (int i = 0; i < width; ++i) inside[i] = (labels[i] & (kSurface | kEdge)) != 0;
+      for (int i = 0; i < width; ++i) inside[i] = middle[i] >> 1;
+      for (int i : partly) inside[i] = outline_.contains(columns_.centre[i], rows_.centre[j]);
+      combine(labels, inside, width);
     }
   }
 
  private:
-  /// Labels of the pixels in `row` and each patch's (or patch centre's) columns, or-ed: first down, then across.
-  void gather(const Interval& row, Interval Extent::*columns, std::vector<std::uint8_t>& line,
-              std::uint8_t* out) const {
-    std::ranges::fill(line, row == Interval{} ? std::uint8_t{kBackground} : std::uint8_t{0});
-    for (int y = row.first; y < row.last; ++y) {
-      const Label* labels = &labels_(0, y);
-      for (int x = 0; x < labels_.width; ++x) {
-        const auto label = static_cast<std::uint8_t>(labels[x]);
-        line[x] |= label + 1 + (label == 2);  // 1 << label
-      }
-    }
-    for (int i = 0; i < layout_.width; ++i) {
-      const Interval column = columns_[i].*columns;
-      std::uint8_t label = column == Interval{} ? std::uint8_t{kBackground} : line[column.first];
-      for (int x = column.first + 1; x < column.last; ++x) label |= line[x];
-      out[i] = label;
-    }
+  enum Cover : std::uint8_t { kPartly = 1, kFull = 2 };
+  static constexpr auto cover_bit = [](std::uint8_t coverage) {
+    return static_cast<std::uint8_t>(coverage == 255 ? kFull : coverage != 0 ? kPartly : 0);
+  };
+  static constexpr auto label_bit = [](Label label) {  // 1 << label, which vectorises
+    const auto value = static_cast<std::uint8_t>(label);
+    return static_cast<std::uint8_t>(value + 1 + (value == 2));
+  };
+
+  /// World coordinate of the grid's end on the image's left, and on its top.
+  static double low_end(const VoxelGrid& grid, SignedAxis right, int width) {
+    return grid.low()[right.axis] + (right.sign > 0 ? 0 : grid.spacing() * width);
+  }
+  static double high_end(const VoxelGrid& grid, SignedAxis up, int height) {
+    return grid.low()[up.axis] + (up.sign > 0 ? grid.spacing() * height : 0);
   }
 
-  const Raster<Label>& labels_;
-  ShadowLayout layout_;
+  /// A patch that counts as the object shows it, if only by a fraction of a pixel.
+  void combine(std::uint8_t* labels, std::uint8_t* inside, int width) const {
+    constexpr std::uint8_t object = kSurface | kEdge;
+    if (patch_ == Patch::any)
+      for (int i = 0; i < width; ++i) inside[i] |= (labels[i] & object) != 0;
+    for (int i = 0; i < width; ++i) labels[i] |= inside[i] && !(labels[i] & object) ? kSurface : 0;
+  }
+
+  const Drawing& drawing_;
+  Outline outline_;
   Patch patch_;
-  std::vector<Extent> columns_, rows_;
+  Side columns_, rows_;
 };
 
 }  // namespace
@@ -108,7 +152,7 @@ class Projection {
 PatchLabels patch_labels(const AlignedView& view, const VoxelGrid& grid, Patch patch) {
   const ShadowLayout layout(grid.size(), view.view);
   PatchLabels result{view.view, Raster<std::uint8_t>(layout.width, layout.height), Mask(layout.width, layout.height)};
-  const Projection projection(view, grid, patch);
+  const Projection projection(view, layout, grid, patch);
   parallel_ranges(0, layout.height, 64, [&](int first, int last) { projection.rows(first, last, result); });
   return result;
 }

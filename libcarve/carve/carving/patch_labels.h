@@ -10,8 +10,8 @@ namespace carve {
 
 /// When the patch of pixels that a voxel covers in a drawing counts as the object.
 enum class Patch {
-  centre,  // the pixel at the voxel's centre does: the sampled visual hull, unbiased
-  any      // any of its pixels does, as Algorithm 3.2 has it: keeps thin parts, inflates by up to half a voxel
+  centre,  // the voxel's centre lies in the drawn outline (image/outline.h): the sampled visual hull, unbiased
+  any      // that, or any of its pixels does, as Algorithm 3.2 has it: keeps thin parts, inflates by up to half a voxel
 };
 inline std::span<const char* const> names(Patch) {
   static constexpr const char* all[] = {"centre", "any"};
@@ -30,8 +30,8 @@ struct PatchLabels {
 
 /// Projects the grid's voxels into a drawing, Algorithm 3.2 of \cite silva_2018. A pixel belongs to the patch its
 /// centre lies in (to both where it lies between two); a patch that holds no pixel's centre takes the pixel it lies in.
-/// A voxel's centre that lies between two pixels takes both. Outside the drawing is background. Of `grid` only size,
-/// place and spacing count.
+/// What counts as the object has kSurface or kEdge. Outside the drawing is background. Of `grid` only size, place and
+/// spacing count.
 PatchLabels patch_labels(const AlignedView& view, const VoxelGrid& grid, Patch patch = Patch::centre);
 
 }  // namespace carve

@@ -2,64 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "carve/carving/patch_labels.h"
 #include "carve/core/parallel.h"
 #include "carve/grid/shadow.h"
+#include "carve/image/outline.h"
 
 namespace carve {
 namespace {
 
-constexpr double kLevel = 127.5;     // of 255: half covered
 constexpr double kClearance = 0.02;  // voxels between a crossing and the centres
-
-/// The coverage along one pixel row or column; where the line runs between two, their mean.
-class CoverageLine {
- public:
-  /// \param across  pixel coordinate of the line
-  CoverageLine(const Mask& coverage, bool along_rows, double across) : coverage_(coverage), along_rows_(along_rows) {
-    low_ = static_cast<int>(std::floor(across - 1e-6));
-    high_ = static_cast<int>(std::floor(across + 1e-6));
-  }
-
-  /// Position of the first crossing from `from` (inside) to `to` (outside), as a share of the way.
-  double crossing(double from, double to) const {
-    const double direction = to > from ? 1 : -1;
-    double x = from, value = at(from);
-    if (value < kLevel) return 0;
-    while (x != to) {
-      // The next pixel centre on the way: coverage is linear up to there.
-      const double centre = (direction > 0 ? std::floor(x - 0.5) + 1 : std::ceil(x - 0.5) - 1) + 0.5;
-      const double next = (to - centre) * direction > 0 ? centre : to;
-      const double next_value = at(next);
-      if (next_value < kLevel) {
-        const double position = x + (next - x) * (value - kLevel) / (value - next_value);
-        return (position - from) / (to - from);
-      }
-      x = next;
-      value = next_value;
-    }
-    return 1;
-  }
-
- private:
-  double pixel(int x, int across) const {
-    if (!along_rows_) std::swap(x, across);
-    return coverage_.contains(x, across) ? coverage_(x, across) : 0;
-  }
-  double at(double x) const {
-    const double before = std::floor(x - 0.5), weight = x - 0.5 - before;
-    const int i = static_cast<int>(before);
-    const auto interpolated = [&](int across) {
-      return (1 - weight) * pixel(i, across) + weight * pixel(i + 1, across);
-    };
-    return low_ == high_ ? interpolated(low_) : (interpolated(low_) + interpolated(high_)) / 2;
-  }
-
-  const Mask& coverage_;
-  bool along_rows_;
-  int low_, high_;
-};
 
 /// What two views of one plane say together: the nearer of two crossings; nothing if they contradict each other.
 float nearer(float a, float b) {
@@ -69,54 +22,84 @@ float nearer(float a, float b) {
   return std::abs(a) < std::abs(b) ? a : b;
 }
 
-class ViewContour {
+/// One view in the coordinates of its plane: u, v = voxel indices along the plane's first and second axis.
+class PlaneView {
  public:
-  ViewContour(const AlignedView& view, const VoxelGrid& grid)
-      : view_(view), grid_(grid), layout_(grid.size(), view.view), inside_(patch_labels(view, grid).inside) {}
+  PlaneView(const AlignedView& view, const VoxelGrid& grid)
+      : view_(view), grid_(grid), layout_(grid.size(), view.view), outline_(view.drawing.coverage) {
+    const bool swapped = layout_.frame.right.axis > layout_.frame.up.axis;  // u runs along the image's columns
+    first_is_right_ = !swapped;
+    const Mask mask = patch_labels(view, grid).inside;
+    inside_ = swapped ? Mask(mask.height, mask.width) : Mask(mask.width, mask.height);
+    for (int j = 0; j < mask.height; ++j)
+      for (int i = 0; i < mask.width; ++i) {
+        const int right = layout_.right_index(i), up = layout_.up_index(j);
+        (swapped ? inside_(up, right) : inside_(right, up)) = mask(i, j);
+      }
+  }
 
-  /// The crossings along the view's right axis (or up axis), or-ed into the plane's entries for that axis.
-  void add(bool along_right, bool axis_is_first, Raster<float>& plane) const {
-    const int lines = along_right ? layout_.height : layout_.width,
-              length = along_right ? layout_.width : layout_.height;
-    parallel_ranges(0, lines, 16, [&](int begin, int end) {
-      for (int line = begin; line < end; ++line) {
-        const CoverageLine coverage(view_.drawing.coverage, along_right, pixel(!along_right, line));
-        for (int i = 0; i <= length; ++i) {
-          const bool lower = inside(along_right, i - 1, line), upper = inside(along_right, i, line);
-          if (lower == upper) continue;
-          const double low = pixel(along_right, i - 1), high = pixel(along_right, i);
-          const double share = lower ? coverage.crossing(low, high) : coverage.crossing(high, low);
-          const auto distance = static_cast<float>(std::clamp(share, kClearance, 1 - kClearance));
-          float& entry = axis_is_first ? plane(i, line) : plane(line, i);
-          entry = nearer(entry, lower ? distance : -distance);
-        }
+  void add_crossings(PlaneCrossings& plane) const {
+    const int width = inside_.width, height = inside_.height;
+    parallel_ranges(0, height + 1, 32, [&](int begin, int end) {
+      const std::vector<std::uint8_t> outside(width, 0);
+      std::vector<std::uint8_t> shifted(width + 2, 0);
+      for (int v = begin; v < end; ++v) {
+        const std::uint8_t* row = v < height ? &inside_(0, v) : outside.data();
+        const std::uint8_t* before = v > 0 ? &inside_(0, v - 1) : outside.data();
+        each_difference(before, row, width, [&](int u, bool lower) {
+          add(plane.second(u, v), lower, crossing(!first_is_right_, u, v - 1, v, lower));
+        });
+        if (v == height) continue;
+        std::memcpy(shifted.data() + 1, row, width);
+        each_difference(shifted.data(), shifted.data() + 1, width + 1, [&](int u, bool lower) {
+          add(plane.first(u, v), lower, crossing(first_is_right_, v, u - 1, u, lower));
+        });
       }
     });
   }
 
-  void add(PlaneCrossings& plane) const {
-    const int right = layout_.frame.right.axis, up = layout_.frame.up.axis;
-    add(true, right < up, right < up ? plane.first : plane.second);
-    add(false, up < right, up < right ? plane.first : plane.second);
+ private:
+  /// Calls found(i, lower[i]) where two rows of 0 and 1 differ; eight entries are compared at a time.
+  template <class Found>
+  static void each_difference(const std::uint8_t* lower, const std::uint8_t* upper, int count, Found&& found) {
+    for (int i = 0; i < count;) {
+      if (i + 8 <= count && std::memcmp(lower + i, upper + i, 8) == 0) {
+        i += 8;
+        continue;
+      }
+      const int end = std::min(count, i + 8);
+      for (; i < end; ++i)
+        if (lower[i] != upper[i]) found(i, lower[i] != 0);
+    }
   }
 
- private:
-  /// Pixel coordinate of a voxel centre's index along the right axis (or up axis).
+  static void add(float& entry, bool lower_inside, float distance) {
+    entry = nearer(entry, lower_inside ? distance : -distance);
+  }
+
+  /// Distance in voxels from the inside one of the centres low and high = low + 1, on the grid line at index `across`.
+  float crossing(bool along_right, int across, int low, int high, bool lower_inside) const {
+    const double line = pixel(!along_right, across);
+    const double from = pixel(along_right, lower_inside ? low : high),
+                 to = pixel(along_right, lower_inside ? high : low);
+    const double left =
+        along_right ? outline_.leave_along_row(from, to, line) : outline_.leave_along_column(from, to, line);
+    return static_cast<float>(std::clamp((left - from) / (to - from), kClearance, 1 - kClearance));
+  }
+
+  /// Pixel coordinate of a voxel's centre, by its index along the view's right (or up) axis.
   double pixel(bool along_right, int index) const {
     const int axis = along_right ? layout_.frame.right.axis : layout_.frame.up.axis;
     const double place = grid_.low()[axis] + grid_.spacing() * (index + 0.5);
     return along_right ? view_.column(place) : view_.row(place);
   }
-  bool inside(bool along_right, int index, int line) const {
-    const int right = along_right ? index : line, up = along_right ? line : index;
-    const int i = layout_.right_index(right), j = layout_.up_index(up);
-    return inside_.contains(i, j) && inside_(i, j);
-  }
 
   const AlignedView& view_;
   const VoxelGrid& grid_;
   ShadowLayout layout_;
-  Mask inside_;
+  Outline outline_;
+  bool first_is_right_ = true;
+  Mask inside_;  // (u, v)
 };
 
 }  // namespace
@@ -131,7 +114,7 @@ Crossings contour_crossings(const ViewSet& views, const VoxelGrid& grid) {
       const int second = seen_along == 2 ? grid.size().y() : grid.size().z();
       plane = {Raster<float>(first + 1, second), Raster<float>(first, second + 1)};
     }
-    ViewContour(view, grid).add(plane);
+    PlaneView(view, grid).add_crossings(plane);
   }
   return result;
 }

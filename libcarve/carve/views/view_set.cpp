@@ -7,11 +7,13 @@
 #include <stdexcept>
 
 #include "carve/core/error.h"
+#include "carve/image/outline.h"
 
 namespace carve {
 namespace {
 
 using Drawings = std::map<View, Drawing>;
+using Bounds = std::map<View, OutlineBounds>;
 
 Drawings renamed(Drawings drawings, const AlignOptions& options) {
   if (!options.side_from_left) return drawings;
@@ -56,29 +58,31 @@ void check_drawing(View view, const Drawing& drawing) {
   if (box.empty()) throw NoResult(std::string(name(view)) + ": the drawing shows nothing but background");
   if (box.x0 < 0 || box.y0 < 0 || box.x1 > drawing.labels.width || box.y1 > drawing.labels.height)
     throw std::invalid_argument(std::string(name(view)) + ": bounds must lie inside the labels");
+  if (drawing.coverage.width != drawing.labels.width || drawing.coverage.height != drawing.labels.height)
+    throw std::invalid_argument(std::string(name(view)) + ": coverage and labels must have one size");
 }
 
 /// Logarithms of the object's extents, up to a common summand: each drawing says log(width / height) of its box, its
 /// own scale cancels out. The last equation fixes the summand.
-Vec3 fit_log_size(const Drawings& drawings) {
+Vec3 fit_log_size(const Bounds& bounds) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Ones();
   Vec3 rhs = Vec3::Zero();
-  for (const auto& [view, drawing] : drawings) {
+  for (const auto& [view, box] : bounds) {
     Vec3 row = Vec3::Zero();
     row[frame(view).right.axis] = 1;
     row[frame(view).up.axis] = -1;
     normal += row * row.transpose();
-    rhs += row * std::log(static_cast<double>(drawing.bounds.width()) / drawing.bounds.height());
+    rhs += row * std::log((box.x1 - box.x0) / (box.y1 - box.y0));
   }
   return normal.ldlt().solve(rhs);
 }
 
 /// Each drawing brought to the object's scale as a whole, how far do two extents of one axis lie apart?
-double largest_disagreement(const Drawings& drawings, const Vec3& log_size) {
+double largest_disagreement(const Bounds& bounds, const Vec3& log_size) {
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
-  for (const auto& [view, drawing] : drawings) {
+  for (const auto& [view, box] : bounds) {
     const int right = frame(view).right.axis, up = frame(view).up.axis;
-    const double log_width = std::log(drawing.bounds.width()), log_height = std::log(drawing.bounds.height());
+    const double log_width = std::log(box.x1 - box.x0), log_height = std::log(box.y1 - box.y0);
     const double scale = (log_width - log_size[right] + log_height - log_size[up]) / 2;
     for (const auto& [axis, extent] : {std::pair(right, log_width - scale), std::pair(up, log_height - scale)}) {
       low[axis] = std::min(low[axis], extent);
@@ -94,9 +98,8 @@ std::pair<double, double> line(double low, double size, double at_low, double at
   return {at_low - slope * low, slope};
 }
 
-AlignedView place(View view, Drawing drawing, const ViewSet& set, bool flipped) {
+AlignedView place(View view, Drawing drawing, const OutlineBounds& box, const ViewSet& set, bool flipped) {
   const auto [right, up, toward] = frame(view);
-  const Box box = drawing.bounds;
   AlignedView placed{view, std::move(drawing)};
   double x0 = box.x0, x1 = box.x1, y0 = box.y0, y1 = box.y1;
   if ((right.sign > 0) == flipped) std::swap(x0, x1);
@@ -117,14 +120,18 @@ ViewSet align(std::map<View, Drawing> drawings, const AlignOptions& options) {
   const std::vector<View> flipped = flipped_views(options);
   drawings = renamed(std::move(drawings), options);
   check_axes(drawings);
-  for (const auto& [view, drawing] : drawings) check_drawing(view, drawing);
+  Bounds bounds;
+  for (const auto& [view, drawing] : drawings) {
+    check_drawing(view, drawing);
+    bounds[view] = outline_bounds(drawing);
+  }
 
-  const Vec3 log_size = fit_log_size(drawings);
+  const Vec3 log_size = fit_log_size(bounds);
   ViewSet set;
   set.size = (log_size.array() - log_size.maxCoeff()).exp();
-  set.disagreement = largest_disagreement(drawings, log_size);
+  set.disagreement = largest_disagreement(bounds, log_size);
   for (auto& [view, drawing] : drawings)
-    set.views.push_back(place(view, std::move(drawing), set, std::ranges::count(flipped, view) > 0));
+    set.views.push_back(place(view, std::move(drawing), bounds[view], set, std::ranges::count(flipped, view) > 0));
   return set;
 }
 

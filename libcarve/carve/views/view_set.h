@@ -43,10 +43,10 @@ void visit_fields(AlignOptions& o, Visitor&& field) {
   field("side_from_left", o.side_from_left, "the side drawing is seen from -X (the object's right-hand side)");
 }
 
-/// Scales the drawings so that their bounding boxes agree along shared axes (thesis 3.1.1): the object's proportions
-/// are the least-squares fit (of logarithms) of all drawings' proportions, and each drawing's box is stretched onto
-/// them. \throws std::invalid_argument: an axis that no drawing shows (so fewer than two drawings), two drawings of one
-/// name, a flip of no view; NoResult if a drawing is empty
+/// Scales the drawings so that their bounding boxes (to a fraction of a pixel, image/outline.h) agree along shared axes
+/// (thesis 3.1.1): the object's proportions are the least-squares fit (of logarithms) of all drawings' proportions, and
+/// each drawing's box is stretched onto them. \throws std::invalid_argument: an axis that no drawing shows (so fewer
+/// than two drawings), two drawings of one name, a flip of no view; NoResult if a drawing is empty
 ViewSet align(std::map<View, Drawing> drawings, const AlignOptions& options = {});
 
 }  // namespace carve
