@@ -119,11 +119,11 @@ int table_command(const Arguments& arguments) {
     };
     write("runs.csv", long_csv(records));
     std::string all;
-    for (const std::string& metric : overview.metrics) {
-      const Table table = make_table(overview, records, *find_metric(metric));
-      write(metric + ".md", to_markdown(table));
-      write(metric + ".csv", to_csv(table));
-      write(metric + ".tex", to_latex(table));
+    for (const RunMetric& metric : overview.metrics) {
+      const Table table = make_table(overview, records, metric);
+      write(metric.name + ".md", to_markdown(table));
+      write(metric.name + ".csv", to_csv(table));
+      write(metric.name + ".tex", to_latex(table));
       all += to_markdown(table) + "\n";
     }
     for (const std::string& complaint : complaints) std::cerr << "carve-experiments: " << complaint << '\n';

@@ -78,8 +78,7 @@ std::string compare(const Overview& overview, const std::vector<Record>& a, cons
   out << "# " << overview.title << "\n\n"
       << both << " of " << pairs.size() << " runs have a result on both sides.\n\n"
       << differing.str() << (differing.str().empty() ? "" : "\n");
-  for (const std::string& name : overview.metrics)
-    if (const RunMetric* metric = find_metric(name)) compare_metric(out, *metric, overview.methods, pairs);
+  for (const RunMetric& metric : overview.metrics) compare_metric(out, metric, overview.methods, pairs);
   return out.str();
 }
 

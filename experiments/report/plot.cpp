@@ -120,7 +120,7 @@ std::string script_of(const Data& data, const Overview& overview, const RunMetri
   } else {
     out << "set style data histogram\nset style histogram clustered gap 1\nset style fill solid 0.9 border -1\n"
         << "set xtics rotate by -40 font ',9'\n";
-    if (metric.better == Better::lower) out << "set yrange [0:*]\n";
+    if (metric.better == Direction::lower) out << "set yrange [0:*]\n";
   }
   out << "do for [k = 1:3] {\n  if (k == 1) { set terminal svg size " << wide << ",480 font 'sans,12'; set output '"
       << name << ".svg' }\n"

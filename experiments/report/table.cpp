@@ -102,20 +102,20 @@ void summarise(Table& table) {
 // Index of a row's best entries.
 std::set<std::size_t> best_of(const Table& table, const Table::Row& row) {
   std::set<std::size_t> best;
-  if (table.metric.better == Better::neither || row.entries.size() < 2) return best;
+  if (table.metric.better == Direction::none || row.entries.size() < 2) return best;
   double record = 0;
   for (std::size_t c = 0; c < row.entries.size(); ++c) {
     if (!row.entries[c].value || !std::isfinite(*row.entries[c].value)) continue;
-    const double value = table.metric.better == Better::lower ? *row.entries[c].value : -*row.entries[c].value;
+    const double value = table.metric.better == Direction::lower ? *row.entries[c].value : -*row.entries[c].value;
     if (best.empty() || value < record) best.clear();
     if (best.empty() || value == record) best.insert(c), record = value;
   }
   return best;
 }
 
-std::string difference_text(const PairedDifference& d, Better better) {
-  const int wins = better == Better::higher ? d.worse : d.better,
-            losses = better == Better::higher ? d.better : d.worse;
+std::string difference_text(const PairedDifference& d, Direction better) {
+  const int wins = better == Direction::higher ? d.worse : d.better,
+            losses = better == Direction::higher ? d.better : d.worse;
   return short_text(d.mean) + " [" + short_text(d.low) + ", " + short_text(d.high) + "], " + std::to_string(wins) +
          " better, " + std::to_string(losses) + " worse, p = " + short_text(d.p);
 }
@@ -153,9 +153,9 @@ std::string joined(const std::vector<std::string>& parts, const std::string& bet
 }
 
 std::string legend(const RunMetric& metric) {
-  const char* better = metric.better == Better::lower    ? "lower is better"
-                       : metric.better == Better::higher ? "higher is better"
-                                                         : "";
+  const char* better = metric.better == Direction::lower    ? "lower is better"
+                       : metric.better == Direction::higher ? "higher is better"
+                                                            : "";
   return metric.name + (metric.unit.empty() ? "" : " (" + metric.unit + ")") + ": " + metric.formula +
          (*better ? "; " : "") + better;
 }

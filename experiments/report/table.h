@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "report/statistics.h"
-#include "store/metrics.h"
 #include "store/record.h"
 
 namespace carve::experiments {

@@ -1,6 +1,7 @@
 #include "run/plan.h"
 
 #include "run/hash.h"
+#include "run/metrics.h"
 #include "run/models.h"
 
 namespace carve::experiments {
@@ -63,11 +64,12 @@ Overview overview(const Spec& spec, const std::vector<Cell>& cells) {
              .baseline = spec.baseline,
              .models = expand_subjects(spec.models),
              .methods = {},
-             .metrics = spec.metrics,
              .sweep = {},
              .heat_map_models = expand_subjects(spec.heat_map_models),
+             .metrics = {},
              .heat_map_range = spec.heat_map_range,
              .runs = static_cast<int>(cells.size())};
+  for (const std::string& name : spec.metrics) o.metrics.push_back(*find_metric(name));
   for (const MethodSpec& method : spec.methods) o.methods.push_back(method.name);
   for (const auto& [field, values] : spec.sweep) o.sweep.push_back(field);
   return o;

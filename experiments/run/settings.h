@@ -1,7 +1,7 @@
 #pragma once
 #include "carve/core/options.h"
 #include "carve/pipeline/reconstruct.h"
-#include "eval/scores.h"
+#include "eval/compare.h"
 #include "run/spec.h"
 #include "synthesize/synthesize.h"
 
@@ -12,7 +12,7 @@ struct RunOptions {
   PipelineOptions pipeline;
   SynthesizeOptions synthesize;
   DegradeOptions degrade;  // its seed is the run's
-  eval::ScoreOptions evaluate;
+  CompareOptions evaluate;
 };
 
 std::vector<Field> fields(RunOptions& options);

@@ -8,8 +8,8 @@
 #include "carve/core/error.h"
 #include "carve/core/file.h"
 #include "run/methods.h"
+#include "run/metrics.h"
 #include "run/settings.h"
-#include "store/metrics.h"
 
 namespace carve::experiments {
 namespace {

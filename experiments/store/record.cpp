@@ -10,6 +10,24 @@ namespace carve::experiments {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+namespace {
+
+constexpr const char* kDirections[] = {"lower", "higher", "none"};
+
+Json json_of(const RunMetric& m) {
+  return {
+      {"name", m.name}, {"formula", m.formula}, {"unit", m.unit}, {"better", kDirections[static_cast<int>(m.better)]}};
+}
+
+RunMetric metric_from(const Json& json) {
+  const auto direction =
+      std::find(std::begin(kDirections), std::end(kDirections), json.at("better").get<std::string>());
+  return {json.at("name"), json.at("formula"), json.at("unit"),
+          direction == std::end(kDirections) ? Direction::none : static_cast<Direction>(direction - kDirections)};
+}
+
+}  // namespace
+
 std::string text_of(const Settings& settings) {
   std::string text;
   for (const auto& [field, value] : settings) text += (text.empty() ? "" : ",") + field + "=" + value;
@@ -25,12 +43,14 @@ std::string to_json(const Record& r) {
 }
 
 std::string to_json(const Overview& o) {
+  Json metrics = Json::array();
+  for (const RunMetric& metric : o.metrics) metrics.push_back(json_of(metric));
   const Json json = {{"spec", o.spec},
                      {"title", o.title},
                      {"baseline", o.baseline},
                      {"models", o.models},
                      {"methods", o.methods},
-                     {"metrics", o.metrics},
+                     {"metrics", metrics},
                      {"sweep", o.sweep},
                      {"runs", o.runs},
                      {"heat_map_models", o.heat_map_models},
@@ -69,7 +89,7 @@ Overview overview_from_json(const std::string& text, const std::string& path) {
     json.at("baseline").get_to(o.baseline);
     json.at("models").get_to(o.models);
     json.at("methods").get_to(o.methods);
-    json.at("metrics").get_to(o.metrics);
+    for (const Json& metric : json.at("metrics")) o.metrics.push_back(metric_from(metric));
     json.at("sweep").get_to(o.sweep);
     json.at("heat_map_models").get_to(o.heat_map_models);
     json.at("heat_map_range").get_to(o.heat_map_range);

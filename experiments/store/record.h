@@ -12,13 +12,21 @@ using Settings = std::map<std::string, std::string>;
 /// "a=1,b=2"
 std::string text_of(const Settings& settings);
 
+enum class Direction { lower, higher, none };  // which is better
+
+/// A column of a table: its legend, its best entry, its plot's axis.
+struct RunMetric {
+  std::string name, formula, unit;
+  Direction better = Direction::none;
+};
+
 /// What a run left in its folder (run.json).
 struct Record {
   std::string id = {}, spec = {}, model = {}, method = {}, arm = {};
   std::string status = {};  // "done", or why there is no result
   Settings swept = {}, settings = {};
   unsigned seed = 1;
-  std::map<std::string, double> metrics = {};          // store/metrics.h
+  std::map<std::string, double> metrics = {};          // by RunMetric::name
   std::map<std::string, std::string> provenance = {};  // commit, compiler, libraries, CPU
   std::string folder = {};                             // where it was read from, relative to the results; not stored
   bool done() const { return status == "done"; }
@@ -27,7 +35,8 @@ struct Record {
 /// What a spec's results are about (overview.json beside its runs), so that tables and plots need nothing else.
 struct Overview {
   std::string spec, title, baseline;
-  std::vector<std::string> models, methods, metrics, sweep, heat_map_models;  // in the spec's order
+  std::vector<std::string> models, methods, sweep, heat_map_models;  // in the spec's order
+  std::vector<RunMetric> metrics;
   double heat_map_range = 2;
   int runs = 0;
 };

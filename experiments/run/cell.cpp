@@ -1,0 +1,107 @@
+#include "run/cell.h"
+
+#include <sys/resource.h>
+
+#include <chrono>
+
+#include "carve/core/file.h"
+#include "carve/core/parallel.h"
+#include "carve/image/read_image.h"
+#include "carve/mesh/mesh_io.h"
+#include "eval/metrics.h"
+#include "models/inside.h"
+#include "models/outer_surface.h"
+#include "run/hash.h"
+#include "run/methods.h"
+#include "run/models.h"
+#include "run/provenance.h"
+#include "run/runner.h"
+
+namespace carve::experiments {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int kOccupancyGrid = 128;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// The outer surface is made once a model; whichever run comes first leaves it for the others, whole.
+Mesh reference_of(const fs::path& results, const Model& model, const std::string& content) {
+  const fs::path file = results / ".references" / (content + ".ply");
+  if (fs::exists(file)) return read_mesh(file);
+  Mesh outer = outer_surface(model);
+  fs::create_directories(file.parent_path());
+  write_mesh(file, outer, {.strict = false});
+  return outer;
+}
+
+void measure_against(const Model& model, const Mesh& reference, const Mesh& mesh, const CompareOptions& options,
+                     Record& record) {
+  const Reference prepared(reference, options);
+  for (const Score& score : scores(prepared.compare(mesh), prepared)) {
+    const auto value = score.percent ? score.percent : score.value;
+    if (value) record.metrics[score.name()] = *value;
+  }
+  const auto [low, high] = bounds(model.mesh);
+  const VoxelGrid grid = grid_over(low, high, kOccupancyGrid);
+  record.metrics["iou"] = intersection_over_union(occupancy(model, grid), occupancy({.mesh = mesh}, grid));
+}
+
+void measure_shadows(const Mesh& mesh, const MethodInput& input, Record& record) {
+  std::map<View, Drawing> drawings;
+  for (const auto& [view, picture] : input.pictures)
+    drawings.emplace(view, understand_drawing(picture, input.options.pipeline.drawing));
+  const ViewSet views = align(std::move(drawings), input.options.pipeline.align);
+  double sum = 0;
+  const VoxelGrid grid = grid_over(views.low(), views.high(), kOccupancyGrid);
+  for (const ViewAgreement& fit : agreement(occupancy({.mesh = mesh}, grid), views)) sum += fit.silhouette_iou;
+  record.metrics["silhouette_iou"] = sum / static_cast<double>(views.views.size());
+  record.metrics["disagreement"] = views.disagreement;
+}
+
+// Stages by the columns that tables have for them.
+void record_times(const std::vector<StageTime>& times, Record& record) {
+  for (const StageTime& time : times) {
+    const std::string column = time.stage == "align" || time.stage == "carve"             ? "seconds_carve"
+                               : time.stage == "intersections" || time.stage == "surface" ? "seconds_surface"
+                                                                                          : "seconds_" + time.stage;
+    record.metrics[column] += time.seconds;
+  }
+}
+
+}  // namespace
+
+void run_cell(const fs::path& results, const std::string& spec, const Cell& cell, int threads) {
+  set_thread_count(threads);
+  const Subject subject = make_subject(cell.model);
+  MethodInput input{subject.drawings, {}, cell.seed};
+  apply(input.options, cell.settings);
+  input.options.degrade.seed = static_cast<int>(cell.seed);
+  if (subject.model) input.pictures = synthesize(*subject.model, input.options.synthesize, input.options.degrade);
+
+  Record record = record_of(spec, cell, "done");
+  const auto start = std::chrono::steady_clock::now();
+  const MethodOutput output = find_method(cell.arm)->run(input);
+  record.metrics["seconds"] = seconds_since(start);
+  record_times(output.times, record);
+
+  if (subject.model)
+    measure_against(*subject.model, reference_of(results, *subject.model, content_hash(subject)), output.mesh,
+                    input.options.evaluate, record);
+  measure_shadows(output.mesh, input, record);
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  record.metrics["megabytes"] = static_cast<double>(usage.ru_maxrss) / 1024;
+  record.provenance = provenance();
+
+  const fs::path folder = results / cell.path;
+  fs::create_directories(folder);
+  for (const auto& [view, picture] : input.pictures) write_png(folder / (std::string(name(view)) + ".png"), picture);
+  write_mesh(folder / "mesh.ply", output.mesh);
+  write_mesh(folder / "mesh.glb", output.mesh);
+  store_record(results, cell, record);  // last: its presence says that all is there
+}
+
+}  // namespace carve::experiments

@@ -1,0 +1,78 @@
+#include "run/metrics.h"
+
+#include <algorithm>
+
+#include "eval/metrics.h"
+
+namespace carve::experiments {
+namespace {
+
+Direction direction_of(carve::Better better) {
+  switch (better) {
+    case carve::Better::lower:
+      return Direction::lower;
+    case carve::Better::higher:
+      return Direction::higher;
+    default:
+      return Direction::none;
+  }
+}
+
+std::string unit_of(carve::Unit unit) {
+  switch (unit) {
+    case carve::Unit::length:
+      return "% of the diagonal";
+    case carve::Unit::squared_length:
+      return "% of the squared diagonal";
+    default:
+      return "";
+  }
+}
+
+std::vector<RunMetric> all_metrics() {
+  std::vector<RunMetric> all;
+  const std::vector<std::string> tolerances = CompareOptions().tolerances;
+  for (const carve::Metric& metric : carve::metrics()) {
+    const RunMetric column{metric.name, metric.formula, unit_of(metric.unit), direction_of(metric.better)};
+    if (!metric.per_tolerance) {
+      all.push_back(column);
+      continue;
+    }
+    for (const std::string& t : tolerances) {
+      all.push_back(column);
+      all.back().name += "@" + t + "%";
+    }
+  }
+  const RunMetric own[] = {
+      {"iou", "volume of intersection over union with the base model's occupancy, 128 voxels along the longest side",
+       "", Direction::higher},
+      {"silhouette_iou", "mean over the drawings of the IoU of silhouette and the solid's shadow", "",
+       Direction::higher},
+      {"disagreement", "largest relative difference of two drawings' extents along a shared axis", "",
+       Direction::lower},
+      {"seconds", "wall time from pictures to mesh, one thread", "s", Direction::lower},
+      {"seconds_read", "understanding the drawings", "s", Direction::lower},
+      {"seconds_carve", "alignment and silhouette carving", "s", Direction::lower},
+      {"seconds_surface", "intersections, marching cubes", "s", Direction::lower},
+      {"seconds_smooth", "smoothing", "s", Direction::lower},
+      {"megabytes", "largest resident memory of the run's process, synthesis and evaluation included", "MB",
+       Direction::lower},
+  };
+  all.insert(all.end(), std::begin(own), std::end(own));
+  return all;
+}
+
+}  // namespace
+
+const std::vector<RunMetric>& metrics() {
+  static const std::vector<RunMetric> all = all_metrics();
+  return all;
+}
+
+const RunMetric* find_metric(const std::string& name) {
+  const auto found =
+      std::find_if(metrics().begin(), metrics().end(), [&](const RunMetric& m) { return m.name == name; });
+  return found == metrics().end() ? nullptr : &*found;
+}
+
+}  // namespace carve::experiments
