@@ -134,8 +134,9 @@ Picture decode_jpeg(std::string_view bytes, const std::string& name) {
   reader.picture.height = static_cast<int>(reader.jpeg.image_height);
   reader.picture.pixels.reserve(std::size_t{reader.jpeg.image_width} * reader.jpeg.image_height);
   reader.cmyk.resize(reader.jpeg.num_components == 4 ? std::size_t{reader.jpeg.image_width} * 4 : 0);
+  const int stored = orientation(reader.jpeg);  // the markers go with the end of decoding
   require(read_rows(reader));
-  return oriented(std::move(reader.picture), orientation(reader.jpeg));
+  return oriented(std::move(reader.picture), stored);
 }
 
 }  // namespace carve::codec

@@ -41,6 +41,15 @@ int close_nothing(thandle_t) { return 0; }
 
 toff_t size(thandle_t handle) { return static_cast<Source*>(handle)->bytes.size(); }
 
+int map(thandle_t handle, void** base, toff_t* size) {
+  auto& source = *static_cast<Source*>(handle);
+  *base = const_cast<char*>(source.bytes.data());  // libtiff reads it only: the file is open for reading
+  *size = source.bytes.size();
+  return 1;
+}
+
+void unmap_nothing(thandle_t, void*, toff_t) {}
+
 int on_error(TIFF*, void* user, const char*, const char* format, va_list arguments) {
   auto& source = *static_cast<Source*>(user);
   char text[300];
@@ -54,16 +63,21 @@ int ignore_warning(TIFF*, void*, const char*, const char*, va_list) { return 1; 
 using Options = std::unique_ptr<TIFFOpenOptions, decltype(&TIFFOpenOptionsFree)>;
 using File = std::unique_ptr<TIFF, decltype(&TIFFClose)>;
 
-File open(Source& source, const std::string& name) {
+// Through read(), libtiff tells when a tag's values lie beyond the end, where from a map it just leaves the tag out;
+// but its tiles without compression come whole from a map only (libtiff 4.5 compares their size with that of its
+// buffer).
+enum class Access { calls, map };
+
+File open(Source& source, const std::string& name, Access access) {
   const Options options(TIFFOpenOptionsAlloc(), TIFFOpenOptionsFree);
   if (!options) throw std::bad_alloc();
   // One strip may hold the largest picture that is read, with four 16-bit channels, and no more.
   TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), tmsize_t{8} * kLargestSide * (kLargestSide + 1));
   TIFFOpenOptionsSetErrorHandlerExtR(options.get(), on_error, &source);
   TIFFOpenOptionsSetWarningHandlerExtR(options.get(), ignore_warning, nullptr);
-  // "m": the file is not mapped, every byte comes through read().
-  return File(TIFFClientOpenExt(name.c_str(), "rm", &source, read, write_nothing, seek, close_nothing, size, nullptr,
-                                nullptr, options.get()),
+  source.position = 0;
+  return File(TIFFClientOpenExt(name.c_str(), access == Access::map ? "r" : "rm", &source, read, write_nothing, seek,
+                                close_nothing, size, map, unmap_nothing, options.get()),
               TIFFClose);
 }
 
@@ -79,20 +93,25 @@ bool keep_alpha_as_stored(TIFF* tiff) {
   return false;
 }
 
-// 16-bit grey with alpha, whose alpha libtiff's own routine drops.
-void put_grey_alpha_16(TIFFRGBAImage* image, std::uint32_t* to, std::uint32_t, std::uint32_t, std::uint32_t width,
-                       std::uint32_t height, std::int32_t skip_from, std::int32_t skip_to, unsigned char* from) {
-  const std::size_t samples = image->samplesperpixel;
-  const auto* sample = reinterpret_cast<const std::uint16_t*>(from);
-  const auto to_8_bits = [](std::uint32_t value) { return (value + 128) / 257; };
+// Grey of 8 or 16 bits, perhaps with alpha: libtiff's own routines cut 16 bits to 8 instead of rounding, drop the alpha
+// beside them, and lose their place in tiles of grey with alpha.
+void put_grey(TIFFRGBAImage* image, std::uint32_t* to, std::uint32_t, std::uint32_t, std::uint32_t width,
+              std::uint32_t height, std::int32_t skip_from, std::int32_t skip_to, unsigned char* from) {
+  const std::ptrdiff_t bytes = image->bitspersample / 8, pixel = bytes * image->samplesperpixel;
+  const auto sample = [&](int channel) -> std::uint32_t {
+    if (bytes == 1) return from[channel];
+    std::uint16_t value;
+    std::memcpy(&value, from + 2 * channel, 2);
+    return (value + 128u) / 257;
+  };
   for (; height > 0; --height) {
-    for (std::uint32_t x = 0; x < width; ++x, sample += samples) {
-      std::uint32_t grey = to_8_bits(sample[0]);
-      if (image->photometric == PHOTOMETRIC_MINISWHITE) grey = 255 - grey;
-      *to++ = grey | grey << 8 | grey << 16 | to_8_bits(sample[1]) << 24;
+    for (std::uint32_t x = 0; x < width; ++x, from += pixel) {
+      const std::uint32_t grey = image->photometric == PHOTOMETRIC_MINISWHITE ? 255 - sample(0) : sample(0);
+      const std::uint32_t alpha = image->alpha ? sample(1) : 255;
+      *to++ = grey | grey << 8 | grey << 16 | alpha << 24;
     }
     to += skip_to;
-    sample += static_cast<std::ptrdiff_t>(skip_from) * static_cast<std::ptrdiff_t>(samples);
+    from += skip_from * pixel;
   }
 }
 
@@ -106,7 +125,7 @@ bool read_pixels(TIFF* tiff, Picture& picture, std::string& error) {
   }
   image.orientation = image.req_orientation = ORIENTATION_TOPLEFT;
   const bool grey = image.photometric == PHOTOMETRIC_MINISBLACK || image.photometric == PHOTOMETRIC_MINISWHITE;
-  if (grey && image.isContig && image.bitspersample == 16 && image.alpha) image.put.contig = put_grey_alpha_16;
+  if (grey && image.isContig && image.bitspersample % 8 == 0) image.put.contig = put_grey;
   const bool done = TIFFRGBAImageGet(&image, reinterpret_cast<std::uint32_t*>(picture.pixels.data()), picture.width,
                                      picture.height) != 0;
   TIFFRGBAImageEnd(&image);
@@ -135,7 +154,7 @@ Picture decode_tiff(std::string_view bytes, const std::string& name) {
     return source.ended ? truncated(name, "TIFF")
                         : damaged(name, "TIFF", source.error.empty() ? "cannot be decoded" : source.error);
   };
-  const File tiff = open(source, name);
+  File tiff = open(source, name, Access::calls);
   if (!tiff) throw failure();
   std::uint32_t width = 0, height = 0;
   std::uint16_t orientation = ORIENTATION_TOPLEFT;
@@ -144,6 +163,8 @@ Picture decode_tiff(std::string_view bytes, const std::string& name) {
   TIFFGetFieldDefaulted(tiff.get(), TIFFTAG_ORIENTATION, &orientation);
   check_size(name, width, height);
   if (source.ended) throw failure();
+  tiff = open(source, name, Access::map);
+  if (!tiff) throw failure();
 
   const bool associated = keep_alpha_as_stored(tiff.get());
   Picture picture(static_cast<int>(width), static_cast<int>(height));

@@ -1,0 +1,1 @@
+#include "carve/image/drawing.h"
