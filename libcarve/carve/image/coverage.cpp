@@ -18,8 +18,10 @@ class Mixture {
   // How much of the pixel the object covers: its colour's place between the paper's and the first unmixed colour
   // inwards. 1 where no direction leads inwards (a line one pixel wide) or the colour is no such mixture.
   double share(int x, int y) const {
+    const Vec2 step = inwards(x, y);
     const Vec3 here = difference(x, y);
-    const Vec3 inside = unmixed(x, y, here);
+    if (step.isZero() || !comes_from_paper(x, y, step, here)) return 1;
+    const Vec3 inside = unmixed(x, y, step, here);
     const double length2 = inside.squaredNorm();
     if (length2 <= here.squaredNorm()) return 1;
     const double share = here.dot(inside) / length2;
@@ -47,14 +49,25 @@ class Mixture {
     return longest < 1e-9 ? Vec2(0, 0) : Vec2(sum / longest);
   }
 
+  static std::pair<int, int> walk(int x, int y, const Vec2& step, int count) {
+    return {x + static_cast<int>(std::lround(count * step.x())), y + static_cast<int>(std::lround(count * step.y()))};
+  }
+
+  // Nothing stands between the pixel and the background that is less like paper than the pixel: a stroke, say.
+  bool comes_from_paper(int x, int y, const Vec2& step, const Vec3& here) const {
+    for (int i = 1; i < kSoft; ++i) {
+      const auto [u, v] = walk(x, y, step, -i);
+      if (!picture_.contains(u, v) || ground_.background(u, v)) break;
+      if (difference(u, v).norm() > here.norm() + kPlateau) return false;
+    }
+    return true;
+  }
+
   // Walks inwards while the colour still moves away from the paper's.
-  Vec3 unmixed(int x, int y, const Vec3& here) const {
-    const Vec2 step = inwards(x, y);
+  Vec3 unmixed(int x, int y, const Vec2& step, const Vec3& here) const {
     Vec3 colour = here;
-    if (step.isZero()) return colour;
     for (int i = 1; i <= kDeepest; ++i) {
-      const int u = x + static_cast<int>(std::lround(i * step.x())),
-                v = y + static_cast<int>(std::lround(i * step.y()));
+      const auto [u, v] = walk(x, y, step, i);
       if (!picture_.contains(u, v) || ground_.background(u, v)) break;
       const Vec3 next = difference(u, v);
       if (next.norm() < colour.norm() + kPlateau) break;
@@ -69,33 +82,57 @@ class Mixture {
 
 }  // namespace
 
-void near_row(const Mask& mask, int y, int radius, std::vector<std::uint8_t>& near) {
-  const int width = mask.width;
-  std::vector<std::uint8_t> rows(width + 2 * radius, 0);
-  for (int v = std::max(0, y - radius); v <= std::min(mask.height - 1, y + radius); ++v) {
-    const std::uint8_t* row = &mask(0, v);
-    for (int x = 0; x < width; ++x) rows[x + radius] |= row[x];
+Neighbourhood::Neighbourhood(const Mask& mask, int radius)
+    : mask_(mask), radius_(radius), columns_(mask.width + 2 * radius), near_(mask.width) {}
+
+const std::uint8_t* Neighbourhood::row(int y) {
+  const int width = mask_.width;
+  std::fill(columns_.begin(), columns_.end(), 0);
+  for (int v = std::max(0, y - radius_); v <= std::min(mask_.height - 1, y + radius_); ++v) {
+    const std::uint8_t* row = &mask_(0, v);
+    std::uint8_t* to = columns_.data() + radius_;
+    for (int x = 0; x < width; ++x) to[x] |= row[x];
   }
-  near.assign(width, 0);
-  for (int shift = 0; shift <= 2 * radius; ++shift)
-    for (int x = 0; x < width; ++x) near[x] |= rows[x + shift];
+  std::fill(near_.begin(), near_.end(), 0);
+  for (int shift = 0; shift <= 2 * radius_; ++shift) {
+    const std::uint8_t* from = columns_.data() + shift;
+    for (int x = 0; x < width; ++x) near_[x] |= from[x];
+  }
+  return near_.data();
 }
+
+namespace {
+
+// The object's specks in a lossy drawing: ripples that hung together with it by its borders' mixed pixels.
+void clear_lossy_specks(Mask& coverage) {
+  Mask object(coverage.width, coverage.height);
+  std::transform(coverage.pixels.begin(), coverage.pixels.end(), object.pixels.begin(), [](int c) { return c >= 128; });
+  clear_specks(object, 1, 0, kLargestSpeck);
+  for (std::size_t i = 0; i < object.pixels.size(); ++i)
+    if (!object.pixels[i] && coverage.pixels[i] >= 128) coverage.pixels[i] = 0;
+}
+
+}  // namespace
 
 Mask estimate_coverage(const Picture& picture, const Ground& ground) {
   Mask coverage(picture.width, picture.height);
-  if (ground.rule == Background::alpha) {
-    std::transform(picture.pixels.begin(), picture.pixels.end(), coverage.pixels.begin(), [](Rgba p) { return p.a; });
+  if (ground.colour.a == 0) {
+    for (std::size_t i = 0; i < coverage.pixels.size(); ++i) {
+      const std::uint8_t alpha = picture.pixels[i].a;
+      coverage.pixels[i] = !ground.background.pixels[i] && alpha < 128 ? 255 : alpha;  // enclosed by strokes
+    }
     return coverage;
   }
   const Mixture mixture(picture, ground);
-  std::vector<std::uint8_t> near;
+  Neighbourhood neighbourhood(ground.background, kSoft);
   for (int y = 0; y < picture.height; ++y) {
-    near_row(ground.background, y, kSoft, near);
+    const std::uint8_t* near = neighbourhood.row(y);
     for (int x = 0; x < picture.width; ++x) {
       if (ground.background(x, y)) continue;
       coverage(x, y) = near[x] ? static_cast<std::uint8_t>(std::lround(255 * mixture.share(x, y))) : 255;
     }
   }
+  if (ground.lossy) clear_lossy_specks(coverage);
   return coverage;
 }
 

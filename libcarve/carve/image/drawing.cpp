@@ -65,8 +65,8 @@ Drawing understand_drawing(Picture picture, const DrawingOptions& options) {
   std::transform(drawing.coverage.pixels.begin(), drawing.coverage.pixels.end(), drawing.labels.pixels.begin(),
                  [](int c) { return c >= 128 ? Label::surface : Label::background; });
   drawing.bounds = bounds(drawing.labels);
-  labelling::label_strokes(picture, static_cast<int>(options.ink), drawing.max_stroke, drawing.labels);
   drawing.picture = std::move(picture);
+  labelling::label_strokes(drawing, static_cast<int>(options.ink));
   return drawing;
 }
 

@@ -8,10 +8,11 @@ namespace carve {
 
 /// How a drawing's background is told from the object.
 enum class Background {
-  automatic,  // the first of alpha, border, flood that fits
-  alpha,      // pixels that are transparent
+  automatic,  // alpha if more than 2 % is transparent; flood if strokes alone separate the paper outside from paper
+              // inside; else border
+  alpha,      // pixels that are transparent (alpha < 128)
   border,     // every pixel of the border's colour, holes included
-  flood       // pixels of the border's colour connected with the border: white-filled line art on white paper
+  flood       // pixels of the border's colour that sides connect with the border: white-filled line art on white paper
 };
 inline std::span<const char* const> names(Background) {
   static constexpr const char* all[] = {"auto", "alpha", "border", "flood"};
@@ -33,18 +34,23 @@ void visit_fields(DrawingOptions& o, Visitor&& field) {
 }
 
 /// A drawing as the stages see it: three labels a pixel (thesis 3.1.1) beside the untouched picture.
+/// Everywhere labels(x, y) != Label::background exactly where coverage(x, y) >= 128.
 struct Drawing {
   Picture picture;
   Raster<Label> labels;
   Mask coverage;  // share of the pixel that the object covers, 0..255: sub-pixel silhouettes of anti-aliased borders
   Background background;  // the rule that was used
-  Rgba border;            // the background's colour (alpha 0 under the alpha rule)
+  Rgba border;            // the background's colour (alpha 0 where it is transparency)
   double max_stroke = 0;  // pixels
   Box bounds;             // of all pixels that are not background
 };
 
-/// Labels every pixel. Strokes are thin near-black lines; a black area wider than max_stroke is surface, so that an
-/// all-black silhouette is a solid.
+/// Labels every pixel \cite silva_2018.
+/// - coverage is alpha, or else where a colour lies between the border's colour and the first unmixed colour inwards.
+/// - In pictures with a lossy format's ripples, pale specks and slits narrower than 5 pixels are taken for noise; in
+///   others nothing is, down to single pixels.
+/// - Strokes (edge) are thin near-black lines with their anti-aliased rim. Near-black areas wider than max_stroke (to a
+///   pixel) and larger than 3 max_stroke^2 are surface; so is all of an object without another colour: a silhouette.
 /// \throws std::invalid_argument on an option out of range; NoResult if no pixel, or every pixel, is background
 Drawing understand_drawing(Picture picture, const DrawingOptions& options = {});
 

@@ -6,101 +6,181 @@
 namespace carve::labelling {
 namespace {
 
-// 1 where a pixel equal to `seed` lies within `radius` (centre to centre, Euclidean, exact); `beyond` says whether the
-// pixels outside the raster are such. Linear: distances along the columns, then per row how far each of them reaches.
-Mask within(const Mask& mask, std::uint8_t seed, double radius, bool beyond) {
-  const int width = mask.width, height = mask.height;
-  const int far = static_cast<int>(radius) + 1;
-  std::vector<int> reach(far + 1, -1);  // along the row, from a column whose nearest seed is this far
-  for (int d = 0; d < far; ++d) reach[d] = static_cast<int>(std::sqrt(radius * radius - d * d));
+// Everything below looks at the object's box alone; rasters have its size.
 
-  Raster<std::uint16_t> above(width, height);
-  std::vector<int> distance(width, beyond ? 0 : far);
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      distance[x] = mask(x, y) == seed ? 0 : std::min(distance[x] + 1, far);
-      above(x, y) = static_cast<std::uint16_t>(distance[x]);
+// Vertical distance of every pixel to the nearest one of value `seed` in its column, at most `far`; `beyond` says
+// whether the pixels outside the raster are of that value.
+Raster<std::uint16_t> column_distance(const Mask& mask, std::uint8_t seed, std::uint16_t far, bool beyond) {
+  Raster<std::uint16_t> distance(mask.width, mask.height);
+  std::vector<std::uint16_t> row(mask.width);
+  const auto sweep = [&](int y) {
+    const std::uint8_t* in = &mask(0, y);
+    std::uint16_t* out = &distance(0, y);
+    for (int x = 0; x < mask.width; ++x) {
+      const std::uint16_t next = std::min<std::uint16_t>(row[x] + 1, far);
+      row[x] = std::min(in[x] == seed ? std::uint16_t{0} : next, out[x]);
+      out[x] = row[x];
     }
+  };
+  std::fill(distance.pixels.begin(), distance.pixels.end(), far);
+  std::fill(row.begin(), row.end(), beyond ? 0 : far);
+  for (int y = 0; y < mask.height; ++y) sweep(y);
+  std::fill(row.begin(), row.end(), beyond ? 0 : far);
+  for (int y = mask.height - 1; y >= 0; --y) sweep(y);
+  return distance;
+}
 
-  Mask out(width, height);
-  std::fill(distance.begin(), distance.end(), beyond ? 0 : far);
-  for (int y = height - 1; y >= 0; --y) {
+// 1 where a pixel equal to `seed` lies within `radius` (centre to centre, Euclidean, exact): each column's distance
+// says how far along the row its nearest seed reaches. Linear in the pixels, whatever the radius.
+Mask within(const Mask& mask, std::uint8_t seed, double radius, bool beyond) {
+  const auto far = static_cast<std::uint16_t>(radius + 1);
+  std::vector<int> reach(far + 1, -1);
+  for (int d = 0; d < far; ++d) reach[d] = static_cast<int>(std::sqrt(radius * radius - d * d));
+  const int from_beyond = beyond ? reach[0] : -1;
+
+  const Raster<std::uint16_t> distance = column_distance(mask, seed, far, beyond);
+  Mask out(mask.width, mask.height);
+  for (int y = 0; y < mask.height; ++y) {
+    const std::uint16_t* column = &distance(0, y);
     std::uint8_t* row = &out(0, y);
-    int rest = beyond ? static_cast<int>(radius) : -1;
-    for (int x = 0; x < width; ++x) {
-      distance[x] = mask(x, y) == seed ? 0 : std::min(distance[x] + 1, far);
-      rest = std::max(rest - 1, reach[std::min<int>(distance[x], above(x, y))]);
+    int rest = from_beyond;
+    for (int x = 0; x < mask.width; ++x) {
+      rest = column[x] == 0 ? reach[0] : std::max(rest - 1, reach[column[x]]);
       row[x] = rest >= 0;
     }
-    rest = beyond ? static_cast<int>(radius) : -1;
-    for (int x = width - 1; x >= 0; --x) {
-      rest = std::max(rest - 1, reach[std::min<int>(distance[x], above(x, y))]);
+    rest = from_beyond;
+    for (int x = mask.width - 1; x >= 0; --x) {
+      rest = column[x] == 0 ? reach[0] : std::max(rest - 1, reach[column[x]]);
       row[x] |= rest >= 0;
     }
   }
   return out;
 }
 
+bool any(const Mask& mask) { return std::find(mask.pixels.begin(), mask.pixels.end(), 1) != mask.pixels.end(); }
+
 // The ink that is wider than max_stroke: what a disc of that width, kept inside the ink, sweeps. The disc is let grow
-// by sqrt(2) on the way back so that right-angled corners of a black area belong to it.
+// by sqrt(2) on the way back so that right-angled corners of a black area belong to it. Where strokes meet they are
+// wider than a stroke, too: an area is more than 3 max_stroke^2.
 Mask wide_ink(const Mask& ink, double max_stroke) {
   const int radius = (static_cast<int>(max_stroke) + 1) / 2;
-  Mask core = within(ink, 0, radius, true);
-  if (std::find(core.pixels.begin(), core.pixels.end(), 0) == core.pixels.end()) return Mask(ink.width, ink.height);
-  Mask wide = within(core, 0, std::sqrt(2.0) * radius, false);
+  Mask outer = within(ink, 0, radius, true);
+  if (std::find(outer.pixels.begin(), outer.pixels.end(), 0) == outer.pixels.end()) return Mask(ink.width, ink.height);
+  Mask wide = within(outer, 0, std::sqrt(2.0) * radius, false);
   for (std::size_t i = 0; i < wide.pixels.size(); ++i) wide.pixels[i] &= ink.pixels[i];
+  clear_specks(wide, 1, 0, static_cast<std::size_t>(3 * max_stroke * max_stroke));
   return wide;
 }
 
-int brightness(Rgba p) { return p.r + p.g + p.b; }
-
-// A stroke's anti-aliased rim: darker than half-way between the darkest and the brightest colour around it.
-bool is_rim(const Picture& picture, const Raster<Label>& labels, int x, int y) {
-  int darkest = 3 * 255, brightest = 0;
-  for (int v = std::max(0, y - 1); v <= std::min(picture.height - 1, y + 1); ++v)
-    for (int u = std::max(0, x - 1); u <= std::min(picture.width - 1, x + 1); ++u) {
-      if (labels(u, v) == Label::background) continue;
-      darkest = std::min(darkest, brightness(picture(u, v)));
-      brightest = std::max(brightest, brightness(picture(u, v)));
-    }
-  return 2 * brightness(picture(x, y)) <= darkest + brightest;
-}
-
-// No colour but ink and its rim, up to 0.2 % of the object: a silhouette, solid also where it is thin.
-bool is_all_black(const Raster<Label>& labels, const Mask& ink) {
-  std::size_t objects = 0, coloured = 0;
-  std::vector<std::uint8_t> near;
-  for (int y = 0; y < labels.height; ++y) {
-    near_row(ink, y, 1, near);
-    for (int x = 0; x < labels.width; ++x) {
-      objects += labels(x, y) != Label::background;
-      coloured += labels(x, y) != Label::background && !near[x];
-    }
+class Strokes {
+ public:
+  explicit Strokes(const Drawing& drawing)
+      : drawing_(drawing), lightness_(drawing.bounds.width(), drawing.bounds.height(), kBackground) {
+    for (int y = 0; y < lightness_.height; ++y)
+      for (int x = 0; x < lightness_.width; ++x) {
+        if (!is_object(x, y)) continue;
+        const Rgba p = colour(x, y);
+        lightness_(x, y) = std::min(std::max({p.r, p.g, p.b}), kWhite);
+      }
   }
-  return 500 * coloured <= objects;
-}
+
+  // 1 = edge.
+  Mask find(int level, double max_stroke) const {
+    const Mask ink = ink_up_to(level);
+    if (!any(ink)) return ink;
+    Mask strokes = thin_ink(level, max_stroke);
+    {
+      // On and around a dark area, strokes show at half the level.
+      const Mask blacker = thin_ink(level / 2, max_stroke);
+      for (std::size_t i = 0; i < strokes.pixels.size(); ++i) strokes.pixels[i] |= blacker.pixels[i];
+    }
+    Mask edges = strokes;
+    Neighbourhood near_strokes(strokes, 1);
+    for (int y = 0; y < ink.height; ++y) {
+      const std::uint8_t* near = near_strokes.row(y);
+      for (int x = 0; x < ink.width; ++x)
+        if (near[x] && is_rim(x, y)) edges(x, y) = 1;
+    }
+    return edges;
+  }
+
+ private:
+  static constexpr std::uint8_t kBackground = 255, kWhite = 254;
+
+  Mask ink_up_to(int level) const {
+    Mask ink(lightness_.width, lightness_.height);
+    const std::uint8_t limit = static_cast<std::uint8_t>(std::min<int>(level, kWhite));
+    std::transform(lightness_.pixels.begin(), lightness_.pixels.end(), ink.pixels.begin(),
+                   [=](std::uint8_t lightness) { return lightness <= limit; });
+    return ink;
+  }
+
+  // Ink up to the level that is thin, even together with what is nearly as dark. None in a silhouette.
+  Mask thin_ink(int level, double max_stroke) const {
+    Mask ink = ink_up_to(level);
+    if (is_all_black(ink)) return Mask(ink.width, ink.height);
+    const Mask wide = wide_ink(ink_up_to(level + level / 2), max_stroke);
+    for (std::size_t i = 0; i < ink.pixels.size(); ++i) ink.pixels[i] &= !wide.pixels[i];
+    return ink;
+  }
+
+  // No colour but ink and its rim, up to 0.2 % of the object: a silhouette, solid also where it is thin.
+  bool is_all_black(const Mask& ink) const {
+    std::size_t objects = 0, coloured = 0;
+    Neighbourhood near_ink(ink, 1);
+    for (int y = 0; y < ink.height; ++y) {
+      const std::uint8_t* near = near_ink.row(y);
+      for (int x = 0; x < ink.width; ++x) {
+        const bool object = lightness_(x, y) != kBackground;
+        objects += object;
+        coloured += object && !near[x];
+      }
+    }
+    return 500 * coloured <= objects;
+  }
+
+  // A stroke's anti-aliased rim: darker than half-way between the darkest and the brightest colour around it.
+  bool is_rim(int x, int y) const {
+    if (lightness_(x, y) == kBackground) return false;
+    const int here = brightness(colour(x, y));
+    int darkest = here, brightest = here;
+    for (int v = y - 1; v <= y + 1; ++v)
+      for (int u = x - 1; u <= x + 1; ++u) {
+        if (!lightness_.contains(u, v) || lightness_(u, v) == kBackground) continue;
+        const int there = brightness(colour(u, v));
+        darkest = std::min(darkest, there);
+        brightest = std::max(brightest, there);
+      }
+    return 2 * here < darkest + brightest;
+  }
+
+  bool is_object(int x, int y) const {
+    return drawing_.labels(drawing_.bounds.x0 + x, drawing_.bounds.y0 + y) != Label::background;
+  }
+
+  // The object's colour where it covers a pixel together with paper.
+  Rgba colour(int x, int y) const {
+    const int u = drawing_.bounds.x0 + x, v = drawing_.bounds.y0 + y;
+    const int share = drawing_.coverage(u, v);
+    const Rgba mixed = drawing_.picture(u, v), paper = drawing_.border;
+    if (share == 255 || paper.a == 0) return mixed;
+    const auto pure = [=](int c, int p) {
+      return static_cast<std::uint8_t>(std::clamp(p + (c - p) * 255 / share, 0, 255));
+    };
+    return {pure(mixed.r, paper.r), pure(mixed.g, paper.g), pure(mixed.b, paper.b), 255};
+  }
+
+  const Drawing& drawing_;
+  Mask lightness_;  // the lightest channel up to kWhite, or kBackground; of drawing.bounds
+};
 
 }  // namespace
 
-void label_strokes(const Picture& picture, int ink_level, double max_stroke, Raster<Label>& labels) {
-  Mask ink(picture.width, picture.height);
-  bool any = false;
-  for (std::size_t i = 0; i < ink.pixels.size(); ++i) {
-    const Rgba p = picture.pixels[i];
-    ink.pixels[i] = labels.pixels[i] != Label::background && std::max({p.r, p.g, p.b}) <= ink_level;
-    any |= ink.pixels[i];
-  }
-  if (!any || is_all_black(labels, ink)) return;
-
-  const Mask wide = wide_ink(ink, max_stroke);
-  for (std::size_t i = 0; i < ink.pixels.size(); ++i) ink.pixels[i] &= !wide.pixels[i];  // the strokes
-  std::vector<std::uint8_t> near;
-  for (int y = 0; y < picture.height; ++y) {
-    near_row(ink, y, 1, near);
-    for (int x = 0; x < picture.width; ++x)
-      if (ink(x, y) || (near[x] && labels(x, y) != Label::background && !wide(x, y) && is_rim(picture, labels, x, y)))
-        labels(x, y) = Label::edge;
-  }
+void label_strokes(Drawing& drawing, int ink) {
+  const Mask edges = Strokes(drawing).find(ink, drawing.max_stroke);
+  for (int y = 0; y < edges.height; ++y)
+    for (int x = 0; x < edges.width; ++x)
+      if (edges(x, y)) drawing.labels(drawing.bounds.x0 + x, drawing.bounds.y0 + y) = Label::edge;
 }
 
 }  // namespace carve::labelling
