@@ -25,7 +25,7 @@ std::span<const ProceduralModel> procedural_models() {
        [] { return stairs(5, true); }},
       {"stairs_8_walled", "stairs of 8 steps between walls", [] { return stairs(8, true); }},
       {"box", "a box: every arm must be exact", plain_box},
-      {"box_pockets", "a box with pockets 5, 15 and 30 % deep in three faces", box_pockets},
+      {"box_pockets", "a box with pockets 5, 14 and 30 % deep in side, top and front", box_pockets},
       {"bowl", "a bowl: a curved hollow that only the top shows", bowl},
       {"sphere", "a sphere: no strokes but the outline", sphere},
       {"torus", "a torus: genus 1", ring},

@@ -4,6 +4,7 @@
 
 #include "models/primitives.h"
 #include "models/procedural.h"
+#include "models/shells.h"
 
 namespace carve {
 namespace {
@@ -31,20 +32,6 @@ Vec3 corner(int axis, double along, double u, double v) {
   p[(axis + 1) % 3] = u;
   p[(axis + 2) % 3] = v;
   return p;
-}
-
-// Joins equal corners, which quads leave apart.
-Mesh welded(const Mesh& mesh) {
-  Mesh result;
-  std::vector<int> index;
-  for (const Vec3& p : mesh.positions) {
-    std::size_t i = 0;
-    while (i < result.positions.size() && result.positions[i] != p) ++i;
-    if (i == result.positions.size()) result.positions.push_back(p);
-    index.push_back(static_cast<int>(i));
-  }
-  for (const auto& [a, b, c] : mesh.triangles) result.triangles.push_back({index[a], index[b], index[c]});
-  return result;
 }
 
 // The face of a box towards +axis, with a pocket in it.
@@ -80,11 +67,11 @@ Model plain_box() {
   return placed(std::move(model));
 }
 
-// Pockets of 5 %, 15 % and 30 % of the longest side in the front, the side and the top.
+// Pockets of 5 %, 14 % and 30 % of the longest side in the side, the top and the front.
 Model box_pockets() {
   const Vec3 low(-0.5, 0, -0.4), high(0.5, 0.8, 0.4);
   const Pocket pockets[] = {{0, {0.15, -0.2}, {0.55, 0.25}, 0.05},
-                            {1, {-0.25, -0.35}, {0.2, 0.1}, 0.15},
+                            {1, {-0.25, -0.35}, {0.2, 0.1}, 0.14},
                             {2, {-0.3, 0.12}, {0.05, 0.5}, 0.30}};
   Mesh mesh;
   for (const Pocket& pocket : pockets) {
@@ -96,7 +83,7 @@ Model box_pockets() {
   return placed(std::move(model));
 }
 
-// Its inner wall is upright for the first tenth below the rim, so that the rim is a stroke in the top view.
+// Its inner wall is upright for the first 8 % below the rim, so that the rim is a stroke in the top view.
 Model bowl() {
   std::vector<Vec2> profile{{0, 0}, {0.24, 0}};
   const auto arc = [&](double radius, double centre, double from, double to) {
@@ -105,10 +92,10 @@ Model bowl() {
       profile.emplace_back(radius * std::sin(angle), centre - radius * std::cos(angle));
     }
   };
-  arc(0.5, 0.42, 30, 90);
-  profile.emplace_back(0.5, 0.5);
-  profile.emplace_back(0.43, 0.5);
-  arc(0.43, 0.40, 90, 2);
+  arc(0.5, 0.45, 30, 90);
+  profile.emplace_back(0.5, 0.55);
+  profile.emplace_back(0.43, 0.55);
+  arc(0.43, 0.47, 90, 2);
   profile.emplace_back(0, profile.back().y());
   Model model;
   add(model, "sand", kSand, lathe(profile, 96));

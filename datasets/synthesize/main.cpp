@@ -9,6 +9,8 @@
 #include "carve/core/options.h"
 #include "carve/core/parallel.h"
 #include "carve/image/read_image.h"
+#include "carve/mesh/mesh_io.h"
+#include "models/outer_surface.h"
 #include "models/procedural.h"
 #include "synthesize/synthesize.h"
 
@@ -23,12 +25,14 @@ struct Arguments {
   int threads = 0;
   SynthesizeOptions options;
   DegradeOptions degrade;
+  OuterSurfaceOptions outer;
 };
 
 std::vector<Field> fields(Arguments& arguments) {
   std::vector<Field> all;
   add_fields(all, "", arguments.options);
   add_fields(all, "degrade", arguments.degrade);
+  add_fields(all, "outer_surface", arguments.outer);
   return all;
 }
 
@@ -60,6 +64,7 @@ void write_drawings(const std::string& name, const Model& model, Arguments& argu
       write_png(folder / (view + ".png"), picture);
   }
   write_model(folder, model);
+  write_mesh(folder / "reference.ply", outer_surface(model, arguments.outer), {.strict = false});
   write_file(folder / "synthesize.toml", [&](std::ostream& out) { out << to_toml(fields(arguments)); });
   std::cout << folder.string() << ": " << model.mesh.triangles.size() << " triangles\n";
 }

@@ -60,7 +60,7 @@ Placement placement(const Vec3& size, View view, const SynthesizeOptions& option
 std::uint8_t share(double part, double whole) { return static_cast<std::uint8_t>(std::lround(255 * part / whole)); }
 
 // The rows [first, last) of the picture, from samples that reach `halo` rows beyond.
-void draw_rows(const ViewSampler& sampler, const StrokeRule& rule, int first, int last, Layers& layers) {
+void draw_rows(const ViewSampler& sampler, const StrokeRule& rule, int darkest, int first, int last, Layers& layers) {
   const int s = rule.samples, width = layers.surface.width;
   const int halo = static_cast<int>(std::ceil(rule.reach())) + 1;
   const SampleBlock block = sampler.sample((first - halo) * s, (last + halo) * s, width * s);
@@ -78,7 +78,9 @@ void draw_rows(const ViewSampler& sampler, const StrokeRule& rule, int first, in
           black += ink(i, j);
         }
       if (!covered) continue;
-      const auto mean = [&](double sum) { return static_cast<std::uint8_t>(std::lround(sum / covered)); };
+      // The lightest channel comes up to `darkest`, the others by as much.
+      const double lift = std::max(0.0, darkest - std::max({r, g, b}) / covered);
+      const auto mean = [&](double sum) { return static_cast<std::uint8_t>(std::lround(sum / covered + lift)); };
       layers.surface(x, y) = {mean(r), mean(g), mean(b), share(covered, s * s)};
       layers.ink(x, y) = share(black, covered);
     }
@@ -125,7 +127,7 @@ std::map<View, Picture> synthesize(const Model& model, const SynthesizeOptions& 
     const int rows = std::clamp((1 << 20) / (options.size * options.samples * options.samples), 16, 32);
     parallel_ranges(0, (options.size + rows - 1) / rows, 1, [&](int first, int last) {
       for (int band = first; band < last; ++band)
-        draw_rows(sampler, rule, band * rows, std::min((band + 1) * rows, options.size), layers);
+        draw_rows(sampler, rule, options.darkest, band * rows, std::min((band + 1) * rows, options.size), layers);
     });
     rub_out(layers.ink, options.stroke, view, degrade);
     drawings[view] = reproduce(composed(layers, background), view, degrade);

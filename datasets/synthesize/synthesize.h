@@ -16,6 +16,7 @@ struct SynthesizeOptions {
   double stroke = 3;                  // pixels
   double jump = 1;                    // % of the diagonal of the model's box
   std::optional<double> crease = {};  // degrees
+  int darkest = 80;
   std::string background = "transparent";
   int samples = 4;
 };
@@ -27,6 +28,8 @@ void visit_fields(SynthesizeOptions& o, Visitor&& field) {
   field("stroke", o.stroke, 0.0, 64.0, "width of a stroke in pixels; 0: none");
   field("jump", o.jump, 0.01, 100.0, "smallest depth discontinuity that is drawn, in % of the box's diagonal");
   field("crease", o.crease, 1.0, 180.0, "also draw edges at which the surface turns by more degrees; auto: none");
+  field("darkest", o.darkest, 0, 255,
+        "near-black surfaces are lifted to this channel value, to tell them from strokes");
   field("background", o.background, "transparent, white or #rrggbb");
   field("samples", o.samples, 1, 16, "rays a pixel, along each axis");
 }

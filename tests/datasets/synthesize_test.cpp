@@ -179,6 +179,13 @@ TEST(Synthesize, BackgroundsFillWhatIsNotCovered) {
   EXPECT_EQ(white(100, 100), blue(100, 100));
 }
 
+TEST(Synthesize, NearBlackSurfacesAreLiftedFromTheStrokes) {
+  Model model;
+  add(model, "coal", {10, 20, 5}, box({-0.5, 0, -0.5}, {0.5, 1, 0.5}));
+  EXPECT_EQ(drawn(model, View::front, kSmall)(100, 100), (Rgba{70, 80, 65, 255}));
+  EXPECT_EQ(drawn(model, View::front, with(kSmall, [](auto& o) { o.darkest = 0; }))(100, 100), (Rgba{10, 20, 5, 255}));
+}
+
 TEST(Synthesize, BytesDoNotDependOnTheThreads) {
   const DegradeOptions degrade{.jitter = 2, .broken = 0.2, .noise = 5};
   set_thread_count(1);
