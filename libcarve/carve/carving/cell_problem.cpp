@@ -1,0 +1,167 @@
+#include "carve/carving/cell_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <unordered_map>
+
+namespace carve {
+namespace {
+
+constexpr double kUnit = 1024;
+
+struct SequenceHash {
+  std::size_t operator()(const std::vector<int>& s) const {
+    std::uint64_t h = 1469598103934665603ULL;
+    for (const int v : s) h = (h ^ static_cast<std::uint64_t>(v)) * 1099511628211ULL;
+    return h;
+  }
+};
+
+double ramp(double x, double low, double high) { return std::clamp((x - low) / (high - low), 0.0, 1.0); }
+
+/// What a pair of neighbouring pixels pays for a depth jump of so many voxels.
+class JumpCost {
+ public:
+  JumpCost(int resolution, const CellWeights& weights) : n_(resolution), weights_(weights) {}
+  std::int32_t operator()(Border border, int jump) const {
+    const double share = jump / n_;
+    double cost = 0;
+    switch (border) {
+      case Border::none:
+        cost = weights_.unexplained * ramp(share, 0.02, 0.06);
+        break;
+      case Border::colour:
+        cost = weights_.colour * ramp(share, 0.02, 0.06);
+        break;
+      case Border::stroke:
+        cost = 1 - ramp(share, 0.008, 0.02);
+        break;
+      case Border::open:
+        cost = weights_.open * (1 - ramp(share, 0.008, 0.02));
+        break;
+      case Border::near:
+        break;
+    }
+    return static_cast<std::int32_t>(std::lround(kUnit * cost));
+  }
+
+ private:
+  double n_;
+  CellWeights weights_;
+};
+
+}  // namespace
+
+CellProblem::CellProblem(const Cells& cells, const Vec3i& size, std::span<const RegionMap> views,
+                         const CellWeights& weights)
+    : keep_(cells.count, 1), classes_of_(cells.count), contacts_(cells.count) {
+  const JumpCost cost(size.maxCoeff(), weights);
+  for (const RegionMap& view : views) {
+    const Rays rays = trace(cells, size, view.view);
+    std::unordered_map<std::vector<int>, int, SequenceHash> class_of;
+    std::vector<int> at(static_cast<std::size_t>(rays.width) * rays.height, -1);
+    for (int j = 0; j < rays.height; ++j)
+      for (int i = 0; i < rays.width; ++i) {
+        const auto ray = rays(i, j);
+        if (ray.empty()) continue;
+        std::vector<int> sequence;
+        for (const RayEntry& e : ray) sequence.push_back(e.cell);
+        const auto [found, fresh] = class_of.emplace(std::move(sequence), static_cast<int>(classes_.size()));
+        if (fresh) {
+          classes_.push_back({static_cast<int>(order_.size()), static_cast<int>(ray.size()), 0, 0, {}});
+          for (const RayEntry& e : ray) {
+            order_.push_back(e.cell);
+            classes_of_[e.cell].push_back(found->second);
+          }
+        }
+        classes_[found->second].empty += std::llround(kUnit * weights.silhouette);
+        at[static_cast<std::size_t>(j) * rays.width + i] = found->second;
+      }
+    std::unordered_map<std::uint64_t, int> group_of;
+    const auto pair = [&](int i, int j, int i2, int j2, Border border) {
+      if (border == Border::near) return;
+      const int a = at[static_cast<std::size_t>(j) * rays.width + i];
+      const int b = at[static_cast<std::size_t>(j2) * rays.width + i2];
+      if (a < 0 || b < 0) return;
+      const auto ra = rays(i, j), rb = rays(i2, j2);
+      const auto [found, fresh] =
+          group_of.emplace(static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint32_t>(b), groups_.size());
+      if (fresh) {
+        groups_.push_back({a, b, static_cast<int>(tables_.size()), 0});
+        tables_.resize(tables_.size() + ra.size() * rb.size(), 0);
+        classes_[a].groups.push_back(found->second);
+        if (a != b) classes_[b].groups.push_back(found->second);
+      }
+      std::int32_t* table = tables_.data() + groups_[found->second].table;
+      for (const RayEntry& ea : ra)
+        for (const RayEntry& eb : rb) *table++ += cost(border, std::abs(ea.depth - eb.depth));
+    };
+    for (int j = 0; j < rays.height; ++j)
+      for (int i = 0; i < rays.width; ++i) {
+        if (i + 1 < rays.width) pair(i, j, i + 1, j, view.right(i, j));
+        if (j + 1 < rays.height) pair(i, j, i, j + 1, view.below(i, j));
+      }
+  }
+  for (const CellContact& c : contacts(cells, size)) {
+    const std::int64_t area = std::llround(kUnit * weights.area * c.faces);
+    contacts_[c.a].push_back({c.b, area});
+    if (c.b >= 0)
+      contacts_[c.b].push_back({c.a, area});
+    else
+      energy_ += area;
+  }
+  for (const std::int64_t v : cells.volume) volume_cost_.push_back(std::llround(kUnit * weights.volume * v));
+  for (Class& c : classes_) c.first = first_of(c);
+  for (Group& g : groups_) energy_ += g.value = value_of(g);
+  class_mark_.assign(classes_.size(), 0);
+  group_mark_.assign(groups_.size(), 0);
+}
+
+int CellProblem::first_of(const Class& c) const {
+  int k = 0;
+  while (k < c.length && !keep_[order_[c.begin + k]]) ++k;
+  return k;
+}
+
+std::int64_t CellProblem::value_of(const Group& g) const {
+  const Class &a = classes_[g.a], &b = classes_[g.b];
+  if (a.first == a.length || b.first == b.length) return 0;
+  return tables_[g.table + a.first * b.length + b.first];
+}
+
+std::int64_t CellProblem::flip(std::span<const int> cells) {
+  ++stamp_;
+  const std::int64_t before = energy_;
+  for (const int c : cells) {
+    keep_[c] ^= 1;
+    energy_ += keep_[c] ? -volume_cost_[c] : volume_cost_[c];
+    for (const Contact& contact : contacts_[c]) {
+      const bool other = contact.other >= 0 && keep_[contact.other];
+      energy_ += (keep_[c] != other) ? contact.cost : -contact.cost;
+    }
+  }
+  std::vector<int> changed;
+  for (const int c : cells)
+    for (const int k : classes_of_[c]) {
+      if (class_mark_[k] == stamp_) continue;
+      class_mark_[k] = stamp_;
+      Class& ray = classes_[k];
+      const int first = first_of(ray);
+      if (first == ray.first) continue;
+      if (ray.first == ray.length) energy_ -= ray.empty;
+      if (first == ray.length) energy_ += ray.empty;
+      ray.first = first;
+      changed.push_back(k);
+    }
+  for (const int k : changed)
+    for (const int g : classes_[k].groups) {
+      if (group_mark_[g] == stamp_) continue;
+      group_mark_[g] = stamp_;
+      energy_ -= groups_[g].value;
+      energy_ += groups_[g].value = value_of(groups_[g]);
+    }
+  return energy_ - before;
+}
+
+}  // namespace carve

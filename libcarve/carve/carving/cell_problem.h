@@ -1,0 +1,74 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "carve/carving/cells.h"
+
+namespace carve {
+
+/// What makes one choice of cells better than another; in units of one grid pixel's side of drawn stroke.
+struct CellWeights {
+  double unexplained = 1;  // a depth jump where no stroke is
+  double colour = 0.5;     // a depth jump where only a colour boundary is
+  double open = 0.5;       // an open stroke without a depth jump
+  double area = 0.01;      // a voxel face of surface
+  double volume = 0.0005;  // a voxel dropped
+  double silhouette = 50;  // a pixel whose ray meets no voxel any more
+};
+
+template <class Visitor>
+void visit_fields(CellWeights& o, Visitor&& field) {
+  field("unexplained", o.unexplained, 0.0, 1e3, "cost of a depth jump away from strokes, a grid pixel's side");
+  field("colour", o.colour, 0.0, 1e3,
+        "cost of a depth jump at a colour boundary without a stroke, a grid pixel's side");
+  field("open", o.open, 0.0, 1e3, "cost of an open stroke without a depth jump, a grid pixel's side");
+  field("area", o.area, 0.0, 1e3, "cost of surface, a voxel's face");
+  field("volume", o.volume, 0.0, 1e3, "cost of carving, a voxel");
+  field("silhouette", o.silhouette, 0.0, 1e6, "cost of a pixel whose ray meets no voxel any more");
+}
+
+/// The energy of keeping or dropping each cell, as a sum over few distinct rays.
+///
+/// Rays that meet the same cells in the same order are one class; what two neighbouring pixels' classes pay for their
+/// first hits is a table. Everything is in whole numbers (1/1024), so that steps add up exactly.
+class CellProblem {
+ public:
+  CellProblem(const Cells& cells, const Vec3i& size, std::span<const RegionMap> views, const CellWeights& weights);
+
+  int cells() const { return static_cast<int>(keep_.size()); }
+  std::span<const std::uint8_t> keep() const { return keep_; }
+  std::int64_t energy() const { return energy_; }
+  std::int64_t flip(std::span<const int> cells);  // toggles them; the change of energy
+
+ private:
+  struct Class {
+    int begin, length;   // in order_
+    int first;           // position of the first kept cell; length if none
+    std::int64_t empty;  // cost if none
+    std::vector<int> groups;
+  };
+  struct Group {
+    int a, b, table;
+    std::int64_t value;
+  };
+  struct Contact {
+    int other;  // -1: outside
+    std::int64_t cost;
+  };
+  int first_of(const Class& c) const;
+  std::int64_t value_of(const Group& g) const;
+
+  std::vector<std::uint8_t> keep_;
+  std::vector<int> order_;
+  std::vector<Class> classes_;
+  std::vector<Group> groups_;
+  std::vector<std::int32_t> tables_;
+  std::vector<std::vector<int>> classes_of_;  // per cell
+  std::vector<std::vector<Contact>> contacts_;
+  std::vector<std::int64_t> volume_cost_;
+  std::vector<int> class_mark_, group_mark_;
+  int stamp_ = 0;
+  std::int64_t energy_ = 0;
+};
+
+}  // namespace carve

@@ -1,0 +1,46 @@
+#pragma once
+#include <vector>
+
+#include "carve/core/raster.h"
+#include "carve/core/vector.h"
+#include "carve/grid/voxel_grid.h"
+#include "carve/views/view_set.h"
+
+namespace carve {
+
+struct RegionOptions {
+  double gap = 6;  // pixels
+  bool colours = true;
+};
+template <class Visitor>
+void visit_fields(RegionOptions& o, Visitor&& field) {
+  field("gap", o.gap, 0.0, 64.0, "gaps in strokes up to this many pixels are closed");
+  field("colours", o.colours, "colour boundaries separate regions too, not only strokes");
+}
+
+/// What lies between a grid pixel and a neighbour in the drawing.
+enum class Border : std::uint8_t {
+  none,    // the same region and no stroke near: the surface goes on
+  near,    // no border, but a stroke within the tolerance
+  stroke,  // a stroke that separates two regions
+  open,    // a stroke that does not (it ends inside the region)
+  colour   // two regions without a stroke between them
+};
+
+/// One drawing cut into regions, at the grid's resolution, laid out as in grid/shadow.h.
+///
+/// A region is a connected part of the object between strokes, gaps closed, and of one colour or texture. Stroke pixels
+/// belong to the nearest region.
+struct RegionMap {
+  View view;
+  int count = 0;
+  Raster<int> region;             // 0 .. count-1; -1 where the hull has no voxel
+  Raster<Border> right, below;    // border to the pixel on the right / below
+  Raster<float> stroke_distance;  // voxels from the pixel's centre to the nearest inner stroke
+  std::vector<Vec3> colour;       // mean sRGB per region, 0..255
+};
+
+/// \param hull  its shadow says which pixels are the object
+RegionMap find_regions(const AlignedView& view, const VoxelGrid& hull, const RegionOptions& options = {});
+
+}  // namespace carve
