@@ -13,10 +13,11 @@ using namespace carve;
 using namespace carve::artist;
 namespace fs = std::filesystem;
 
+// As in fetch: an empty variable is an unset one.
 fs::path default_cache() {
-  const char* cache = std::getenv("XDG_CACHE_HOME");
-  const char* home = std::getenv("HOME");
-  return (cache ? fs::path(cache) : fs::path(home ? home : "/tmp") / ".cache") / "carve/artist";
+  const auto variable = [](const char* name) { return std::string(std::getenv(name) ? std::getenv(name) : ""); };
+  const std::string cache = variable("XDG_CACHE_HOME"), home = variable("HOME");
+  return (!cache.empty() ? fs::path(cache) : fs::path(!home.empty() ? home : "/tmp") / ".cache") / "carve/artist";
 }
 
 bool fetched(const Entry& entry, const fs::path& cache) {
