@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "carve/core/parallel.h"
 #include "carve/grid/shadow.h"
@@ -94,21 +93,20 @@ class Projection {
   void rows(int first, int last, PatchLabels& out) const {
     const int width = out.labels.width, pixels = drawing_.labels.width;
     Gather gather_labels(columns_.patch, pixels, kBackground), gather_cover(columns_.middle, pixels, 0);
-    std::vector<std::uint8_t> middle(width);
+    std::vector<std::uint8_t> middle(width), patch(width);
     std::vector<int> partly;  // columns whose middle pixels are covered in part
     for (int j = first; j < last; ++j) {
       std::uint8_t *labels = &out.labels(0, j), *inside = &out.inside(0, j);
-      if (j > first && rows_.patch[j] == rows_.patch[j - 1])  // a grid finer than the drawing repeats rows
-        std::memcpy(labels, labels - width, width);
-      else
-        gather_labels(drawing_.labels, label_bit, rows_.patch[j], labels);
-
+      // A grid finer than the drawing meets the same pixels several times.
+      if (j == first || rows_.patch[j] != rows_.patch[j - 1])
+        gather_labels(drawing_.labels, label_bit, rows_.patch[j], patch.data());
       if (j == first || rows_.middle[j] != rows_.middle[j - 1]) {
         gather_cover(drawing_.coverage, cover_bit, rows_.middle[j], middle.data());
         partly.clear();
         for (int i = 0; i < width; ++i)
           if (middle[i] == kPartly) partly.push_back(i);
       }
+      std::ranges::copy(patch, labels);
       for (int i = 0; i < width; ++i) inside[i] = middle[i] >> 1;
       for (int i : partly) inside[i] = outline_.contains(columns_.centre[i], rows_.centre[j]);
       combine(labels, inside, width);

@@ -39,10 +39,10 @@ struct Drawing {
   Picture picture;
   Raster<Label> labels;
   Mask coverage;  // share of the pixel that the object covers, 0..255: sub-pixel silhouettes of anti-aliased borders
-  Background background;  // the rule that was used
-  Rgba border;            // the background's colour (alpha 0 where it is transparency)
-  double max_stroke = 0;  // pixels
-  Box bounds;             // of all pixels that are not background
+  Background background = Background::automatic;  // the rule that was used
+  Rgba border;                                    // the background's colour (alpha 0 where it is transparency)
+  double max_stroke = 0;                          // pixels
+  Box bounds;                                     // of all pixels that are not background
 };
 
 /// Labels every pixel \cite silva_2018.

@@ -1,9 +1,9 @@
 #include "carve/surface/marching_cubes.h"
 
+#include <atomic>
 #include <bit>
 #include <limits>
 #include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "carve/core/pages.h"
@@ -187,22 +187,19 @@ class MarchingCubes {
       layers_[z].triangles += part(3);
       layers_[z].cells.insert(layers_[z].cells.end(), found.data(), end);
     }
+    // Checked here, before the cells of a hopeless grid fill the memory.
+    if ((vertices_ += layers_[z].vertices) > std::numeric_limits<int>::max())
+      throw std::length_error("a mesh can have at most 2147483647 vertices, this grid's has more");
   }
 
   /// Turns the rows' and layers' counts into first indices. \return vertices and triangles of the mesh
   std::pair<std::size_t, std::size_t> number() {
-    std::int64_t vertices = 0, triangles = 0;
-    for (Layer& layer : layers_) {
-      vertices += layer.vertices;
-      triangles += std::exchange(layer.triangles, triangles);
-    }
-    if (vertices > std::numeric_limits<int>::max())
-      throw std::length_error("a mesh can have at most 2147483647 vertices, this grid's has " +
-                              std::to_string(vertices));
+    std::int64_t triangles = 0;
+    for (Layer& layer : layers_) triangles += std::exchange(layer.triangles, triangles);
     int next = 0;
     for (Row& row : rows_)
       for (int* index : {&row.x, &row.y, &row.z}) next += std::exchange(*index, next);
-    return {vertices, triangles};
+    return {vertices_, triangles};
   }
 
   /// Pass 2: writes the layer's triangles and the vertices its cells own.
@@ -245,6 +242,7 @@ class MarchingCubes {
   std::vector<float> no_crossings_;
   std::vector<Row> rows_;
   std::vector<Layer> layers_;
+  std::atomic<std::int64_t> vertices_ = 0;
 };
 
 }  // namespace
