@@ -116,6 +116,7 @@ TEST(Shadow, DepthIsTheFirstVoxelFromTheViewer) {
     for (View view : kViews) {
       const ShadowLayout layout(grid.size(), view);
       const Raster<int> depths = depth(grid, view);
+      const Mask mask = shadow(grid, view);
       for (int j = 0; j < layout.height; ++j)
         for (int i = 0; i < layout.width; ++i) {
           Vec3i voxel;
@@ -127,6 +128,7 @@ TEST(Shadow, DepthIsTheFirstVoxelFromTheViewer) {
             if (grid(voxel.x(), voxel.y(), voxel.z())) expected = d;
           }
           ASSERT_EQ(depths(i, j), expected) << name(view);
+          ASSERT_EQ(mask(i, j), expected >= 0) << name(view);
         }
     }
   }

@@ -115,6 +115,13 @@ TEST(MarchingCubes, AnEmptyGridHasNoSurface) {
   EXPECT_TRUE(mesh.positions.empty() && mesh.triangles.empty());
 }
 
+TEST(MarchingCubes, CrossingsOfAnotherGridAreRefused) {
+  const VoxelGrid grid({8, 9, 10}, Vec3::Zero(), 1);
+  EXPECT_NO_THROW(marching_cubes(grid, random_crossings({8, 9, 10}, 1)));
+  for (const Vec3i& size : {Vec3i(9, 9, 10), Vec3i(8, 8, 10), Vec3i(8, 9, 11)})
+    EXPECT_THROW(marching_cubes(grid, random_crossings(size, 1)), std::invalid_argument);
+}
+
 TEST(MarchingCubes, OneVoxelIsAnOctahedron) {
   VoxelGrid grid({3, 3, 3}, Vec3::Zero(), 2);
   grid.set(1, 1, 1, true);

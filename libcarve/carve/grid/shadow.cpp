@@ -55,9 +55,27 @@ Raster<int> depth(const VoxelGrid& grid, View view) {
 }
 
 Mask shadow(const VoxelGrid& grid, View view) {
-  const Raster<int> depths = depth(grid, view);
-  Mask result(depths.width, depths.height);
-  for (std::size_t i = 0; i < depths.pixels.size(); ++i) result.pixels[i] = depths.pixels[i] >= 0;
+  const ShadowLayout layout(grid.size(), view);
+  Mask result(layout.width, layout.height);
+  parallel_ranges(0, layout.height, 8, [&](int first, int last) {
+    std::vector<std::uint64_t> any;
+    for (int j = first; j < last; ++j) {
+      const int up = layout.up_index(j);
+      if (layout.frame.toward.axis == 0) {
+        for (int i = 0; i < layout.width; ++i) result(i, j) = row_depth(grid, up, layout.right_index(i), 1) >= 0;
+        continue;
+      }
+      any.assign(grid.words_per_row(), 0);
+      for (int d = 0; d < layout.depth; ++d) {
+        const std::uint64_t* row = layout.frame.toward.axis == 2 ? grid.row(up, d) : grid.row(d, up);
+        for (std::size_t w = 0; w < any.size(); ++w) any[w] |= row[w];
+      }
+      for (int i = 0; i < layout.width; ++i) {
+        const int x = layout.right_index(i);
+        result(i, j) = any[x >> 6] >> (x & 63) & 1;
+      }
+    }
+  });
   return result;
 }
 

@@ -1,13 +1,21 @@
 #include "carve/grid/voxel_grid.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
 namespace carve {
 namespace {
+
+/// Set bits of a word. Adding neighbours, pairs and nibbles needs no instruction that some machines lack: without it
+/// std::popcount is a call.
+std::int64_t bits(std::uint64_t word) {
+  word -= word >> 1 & 0x5555555555555555;
+  word = (word & 0x3333333333333333) + (word >> 2 & 0x3333333333333333);
+  word = (word + (word >> 4)) & 0x0f0f0f0f0f0f0f0f;
+  return static_cast<std::int64_t>(word * 0x0101010101010101 >> 56);
+}
 
 void check_same_size(const VoxelGrid& a, const VoxelGrid& b) {
   if (a.size() != b.size()) throw std::invalid_argument("grids must have one size");
@@ -35,7 +43,7 @@ VoxelGrid::VoxelGrid(Vec3i size, Vec3 low, double spacing, Fill fill)
 
 std::int64_t VoxelGrid::count() const {
   std::int64_t sum = 0;
-  for (std::uint64_t word : words_) sum += std::popcount(word);
+  for (std::uint64_t word : words_) sum += bits(word);
   return sum;
 }
 
@@ -60,8 +68,8 @@ double intersection_over_union(const VoxelGrid& a, const VoxelGrid& b) {
   check_same_size(a, b);
   std::int64_t both = 0, either = 0;
   for (std::size_t i = 0; i < a.words().size(); ++i) {
-    both += std::popcount(a.words()[i] & b.words()[i]);
-    either += std::popcount(a.words()[i] | b.words()[i]);
+    both += bits(a.words()[i] & b.words()[i]);
+    either += bits(a.words()[i] | b.words()[i]);
   }
   return either == 0 ? 1 : static_cast<double>(both) / static_cast<double>(either);
 }

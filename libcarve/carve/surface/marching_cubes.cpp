@@ -124,6 +124,14 @@ class RowPlaces {
   float side_y_, side_z_;
 };
 
+void check_size(const PlaneCrossings& plane, int first, int second) {
+  const auto fits = [](const Raster<float>& raster, int width, int height) {
+    return raster.empty() || (raster.width == width && raster.height == height);
+  };
+  if (!fits(plane.first, first + 1, second) || !fits(plane.second, first, second + 1))
+    throw std::invalid_argument("crossings must be of the grid that is meshed");
+}
+
 class MarchingCubes {
  public:
   MarchingCubes(const VoxelGrid& grid, const Crossings& crossings)
@@ -240,13 +248,19 @@ class MarchingCubes {
   int words_;  // of a row of cells
   std::vector<std::uint64_t> empty_row_;
   std::vector<float> no_crossings_;
-  std::vector<Row> rows_;
+  std::vector<Row, PageAllocator<Row>> rows_;
   std::vector<Layer> layers_;
   std::atomic<std::int64_t> vertices_ = 0;
 };
 
 }  // namespace
 
-Mesh marching_cubes(const VoxelGrid& grid, const Crossings& crossings) { return MarchingCubes(grid, crossings).mesh(); }
+Mesh marching_cubes(const VoxelGrid& grid, const Crossings& crossings) {
+  const Vec3i& n = grid.size();
+  check_size(crossings.xy, n.x(), n.y());
+  check_size(crossings.xz, n.x(), n.z());
+  check_size(crossings.yz, n.y(), n.z());
+  return MarchingCubes(grid, crossings).mesh();
+}
 
 }  // namespace carve

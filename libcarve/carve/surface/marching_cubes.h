@@ -11,7 +11,8 @@ namespace carve {
 /// always separates its two inside corners, and no triangle's inner edge lies on a cell's face. A vertex lies on the
 /// grid edge between an inside and an outside centre: in its middle, or where `crossings` puts it. Vertices and
 /// triangles come in scan order of their cells (x fastest, then y), whatever the thread count.
-/// \throws std::length_error if the mesh would have more vertices than Triangle's indices can name
+/// \throws std::invalid_argument if the crossings are of a grid of another size; std::length_error if the mesh would
+/// have more vertices than Triangle's indices can name
 Mesh marching_cubes(const VoxelGrid& grid, const Crossings& crossings = {});
 
 }  // namespace carve
