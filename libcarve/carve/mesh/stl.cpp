@@ -29,7 +29,8 @@ bool collapsed(const std::array<Corner, 3>& c) { return c[0] == c[1] || c[1] == 
 // Gives equal corners one index, in order of first appearance.
 class CornerMerger {
  public:
-  explicit CornerMerger(std::vector<Vec3>& positions) : positions_(positions), slots_(1024, kFree) {}
+  CornerMerger(std::vector<Vec3>& positions, std::size_t expected)
+      : positions_(positions), slots_(std::bit_ceil(2 * expected + 1024), kFree) {}
 
   int index(const Vec3& position) {
     if (2 * positions_.size() >= slots_.size()) grow();
@@ -77,7 +78,7 @@ Mesh read_binary(const std::string& path, std::string_view bytes) {
                             " bytes, got " + std::to_string(bytes.size()));
   Mesh mesh;
   mesh.triangles.reserve(count);
-  CornerMerger merger(mesh.positions);
+  CornerMerger merger(mesh.positions, count / 2);  // a closed surface has half as many vertices as triangles
   for (std::size_t facet = 0; facet < count; ++facet) {
     std::array<Corner, 4> normal_and_corners;
     std::memcpy(&normal_and_corners, bytes.data() + kHeader + sizeof count + kFacet * facet, sizeof normal_and_corners);
@@ -101,7 +102,7 @@ bool is_word(std::string_view word, std::string_view lower) {
 Mesh read_text(const std::string& path, std::string_view bytes) {
   TextReader text(path, bytes, false);
   Mesh mesh;
-  CornerMerger merger(mesh.positions);
+  CornerMerger merger(mesh.positions, 0);
   Triangle triangle;
   std::size_t corners = 0;
   bool in_solid = false;
@@ -140,10 +141,10 @@ void write_stl(std::ostream& out, const Mesh& mesh) {
   for (const Triangle& triangle : mesh.triangles) {
     const std::array<Corner, 3> c = corners_of(mesh, triangle);
     if (collapsed(c)) continue;
-    const Vec3 a = vector(c[0]).cast<double>();
-    const Vec3 cross = (vector(c[1]).cast<double>() - a).cross(vector(c[2]).cast<double>() - a);
-    const Eigen::Vector3f normal = cross.stableNormalized().cast<float>();
-    for (const float x : normal) sink.raw(x + 0.0f);
+    const Vec3& a = mesh.positions[triangle[0]];
+    const Vec3 cross = (mesh.positions[triangle[1]] - a).cross(mesh.positions[triangle[2]] - a);
+    const Corner normal = to_file(cross.stableNormalized());
+    sink.raw(normal);
     for (const Corner& corner : c) sink.raw(corner);
     sink.raw(std::uint16_t{0});
   }
