@@ -6,8 +6,11 @@
 #include "apps/command_line.h"
 #include "carve/core/error.h"
 #include "carve/core/file.h"
+#include "report/compare.h"
+#include "report/plot.h"
 #include "report/table.h"
 #include "run/cell.h"
+#include "run/provenance.h"
 #include "run/runner.h"
 
 namespace {
@@ -17,7 +20,7 @@ namespace fs = std::filesystem;
 
 struct Arguments {
   std::vector<fs::path> specs;
-  fs::path results = "results";
+  fs::path results = "results", other;
   RunnerOptions runner;
   std::string shard = "0/1";
   std::string cell;
@@ -60,6 +63,7 @@ int run_command(const Arguments& arguments) {
     const Spec spec = read_spec(path);
     const std::vector<Cell> all = plan(spec);
     const std::vector<Cell> cells = shard_of(all, arguments.shard);
+    export_commit();
     fs::create_directories(arguments.results / spec.name);
     write_file(arguments.results / spec.name / kOverviewFile,
                [&](std::ostream& out) { out << to_json(overview(spec, all)); });
@@ -132,6 +136,34 @@ int table_command(const Arguments& arguments) {
   return kDone;
 }
 
+int plot_command(const Arguments& arguments) {
+  for (const std::string& name : specs_with_results(arguments)) {
+    const fs::path folder = arguments.results / name;
+    std::vector<std::string> complaints;
+    const Overview overview = load_overview(folder);
+    const std::vector<Record> records = load_records(folder, complaints);
+    for (const RunMetric& metric : overview.metrics) plot(folder / "plots", metric.name, overview, records, metric);
+    std::cout << (folder / "plots").string() << ": " << overview.metrics.size()
+              << " figures as SVG, PDF, PNG, with CSV and script\n";
+  }
+  return kDone;
+}
+
+int compare_command(const Arguments& arguments) {
+  bool any = false;
+  for (const std::string& name : specs_in(arguments.results)) {
+    const fs::path a = arguments.results / name, b = arguments.other / name;
+    if (!fs::exists(b / kOverviewFile)) continue;
+    any = true;
+    std::vector<std::string> complaints;
+    std::cout << compare(load_overview(a), load_records(a, complaints), load_records(b, complaints));
+    for (const std::string& complaint : complaints) std::cerr << "carve-experiments: " << complaint << '\n';
+  }
+  if (!any)
+    throw IoError(arguments.other.string(), "has no results of a spec that " + arguments.results.string() + " has");
+  return kDone;
+}
+
 int cell_command(const Arguments& arguments) {
   // Address space, not resident memory: the only limit on memory that the kernel lets a process set for itself.
   const auto bytes = static_cast<rlim_t>(arguments.runner.megabytes * 1e6);
@@ -172,6 +204,12 @@ int main(int argc, char** argv) {
   run->add_flag("--fail-fast", arguments.runner.fail_fast, "start nothing more after a failure");
   add("status", "what is done, what failed and why", status_command, true);
   add("table", "write and print tables (Markdown, CSV, LaTeX) from results", table_command, false);
+
+  add("plot", "draw figures from results (gnuplot)", plot_command, false);
+  CLI::App* both = app.add_subcommand("compare", "two folders of results side by side, paired by run");
+  both->add_option("a", arguments.results, "results")->required()->type_name("RESULTS_A");
+  both->add_option("b", arguments.other, "other results")->required()->type_name("RESULTS_B");
+  both->callback([&] { command = compare_command; });
 
   CLI::App* cell = app.add_subcommand("cell", "one run; used by run")->group("");
   cell->add_option("cell", arguments.cell)->required();

@@ -27,7 +27,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 // The outer surface is made once a model; whichever run comes first leaves it for the others, whole.
 Mesh reference_of(const fs::path& results, const Model& model, const std::string& content) {
-  const fs::path file = results / ".references" / (content + ".ply");
+  const fs::path file = results / "references" / (content + ".ply");
   if (fs::exists(file)) return read_mesh(file);
   Mesh outer = model.mesh;
   fs::create_directories(file.parent_path());

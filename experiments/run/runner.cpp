@@ -68,8 +68,8 @@ class Runner {
  private:
   void start(const Cell& cell) {
     const fs::path folder = results_ / cell.path;
+    fs::remove_all(folder);  // what is there is of another version, or failed, or half done
     fs::create_directories(folder);
-    fs::remove(folder / kRecordFile);  // what is there is of another version, or failed
     running_.push_back(
         {cell,
          bp::child("/proc/self/exe", "cell", cell_argument(spec_, cell), "-o", results_.string(), "--megabytes",

@@ -1,0 +1,106 @@
+#include "run/spec.h"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <set>
+
+#include "run/plan.h"
+#include "temporary_folder.h"
+
+namespace carve::experiments {
+namespace {
+
+class SpecTest : public testing::Test {
+ protected:
+  std::string error_of(const std::string& text) const {
+    try {
+      read(text);
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+  Spec read(const std::string& text) const {
+    std::ofstream(folder_ / "x.toml") << text;
+    return read_spec(folder_ / "x.toml");
+  }
+  const TemporaryFolder folder_;
+};
+
+constexpr const char* kGood = R"(
+models = ["box", "stairs_*"]
+metrics = ["c2m_thesis", "seconds"]
+seeds = [1, 2]
+options = { grid = 32 }
+sweep = { grid = [16, 32], smooth.steps = [0, 1, 2] }
+[[method]]
+name = "plain"
+[[method]]
+name = "rough"
+options = { smooth = { level = 10 } }
+)";
+
+TEST_F(SpecTest, APlanIsEveryCombination) {
+  const Spec spec = read(kGood);
+  const std::vector<Cell> cells = plan(spec);
+  std::set<std::string> models;
+  std::set<std::filesystem::path> paths;
+  std::set<std::string> ids;
+  for (const Cell& cell : cells) {
+    models.insert(cell.model);
+    paths.insert(cell.path);
+    ids.insert(cell.id);
+  }
+  EXPECT_GT(models.size(), 2u);
+  EXPECT_EQ(cells.size(), models.size() * 2 * 3 * 2 * 2);
+  EXPECT_EQ(paths.size(), cells.size());
+  EXPECT_EQ(ids.size(), cells.size());
+}
+
+TEST_F(SpecTest, SweptValuesWinOverAMethodsAndTheSpecs) {
+  for (const Cell& cell : plan(read(kGood))) EXPECT_EQ(cell.settings.at("grid"), cell.swept.at("grid"));
+}
+
+TEST_F(SpecTest, ShardsAreThePlan) {
+  const std::vector<Cell> cells = plan(read(kGood));
+  std::multiset<std::string> whole, parts;
+  for (const Cell& cell : cells) whole.insert(cell.id);
+  for (int i = 0; i < 3; ++i)
+    for (const Cell& cell : shard(cells, i, 3)) parts.insert(cell.id);
+  EXPECT_EQ(parts, whole);
+}
+
+TEST_F(SpecTest, AllMinusSwitchesOneFieldOff) {
+  const Spec spec = read("models = [\"box\"]\nall_minus = [\"intersections\", \"smooth.steps\"]\n");
+  ASSERT_EQ(spec.methods.size(), 3u);
+  EXPECT_EQ(spec.methods[0].settings, Settings{});
+  EXPECT_EQ(spec.methods[1].settings, (Settings{{"intersections", "off"}}));
+  EXPECT_EQ(spec.methods[2].settings, (Settings{{"smooth.steps", "0"}}));
+}
+
+TEST_F(SpecTest, ErrorsNameFileAndLine) {
+  const std::string good = "models = [\"box\"]\n[[method]]\nname = \"a\"\n";
+  EXPECT_THAT(error_of("modles = []\n" + good), testing::HasSubstr("x.toml:1: unknown key modles"));
+  EXPECT_THAT(error_of("options = { grid = 5 }\n" + good), testing::HasSubstr("x.toml:1: grid must be"));
+  EXPECT_THAT(error_of("\nsweep = { grid = [16, 5000] }\n" + good), testing::HasSubstr("x.toml:2: grid must be"));
+  EXPECT_THAT(error_of("metrics = [\"beauty\"]\n" + good), testing::HasSubstr("x.toml:1: unknown metric beauty"));
+  EXPECT_THAT(error_of(good + "options = { gird = 7 }\n"), testing::HasSubstr("x.toml:4: unknown option gird"));
+  EXPECT_THAT(error_of(good + "arm = \"magic\"\n"), testing::HasSubstr("unknown arm magic"));
+  EXPECT_THAT(error_of(good + "[[method]]\nname = \"a\"\n"), testing::HasSubstr("x.toml:4: method a is there twice"));
+  EXPECT_THAT(error_of("baseline = \"b\"\n" + good), testing::HasSubstr("baseline b"));
+  EXPECT_THAT(error_of("models = [\"box\"\n"), testing::HasSubstr("x.toml:"));
+  EXPECT_THAT(error_of("models = [\"box\"]\n"), testing::HasSubstr("at least one [[method]]"));
+}
+
+TEST_F(SpecTest, EverySpecOfTheProjectIsReadAndPlanned) {
+  int specs = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(CARVE_SPECS)) {
+    EXPECT_FALSE(plan(read_spec(entry.path())).empty()) << entry.path();
+    ++specs;
+  }
+  EXPECT_GT(specs, 0);
+}
+
+}  // namespace
+}  // namespace carve::experiments
