@@ -9,6 +9,8 @@
 #include "carve/image/read_image.h"
 #include "carve/mesh/mesh_io.h"
 #include "eval/metrics.h"
+#include "models/inside.h"
+#include "models/outer_surface.h"
 #include "run/hash.h"
 #include "run/methods.h"
 #include "run/models.h"
@@ -29,18 +31,33 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 Mesh reference_of(const fs::path& results, const Model& model, const std::string& content) {
   const fs::path file = results / "references" / (content + ".ply");
   if (fs::exists(file)) return read_mesh(file);
-  Mesh outer = model.mesh;
+  Mesh outer = outer_surface(model);
   fs::create_directories(file.parent_path());
   write_mesh(file, outer, {.strict = false});
   return outer;
 }
 
-void measure_against(const Mesh& reference, const Mesh& mesh, const CompareOptions& options, Record& record) {
+void measure_against(const Model& model, const Mesh& reference, const Mesh& mesh, const CompareOptions& options,
+                     Record& record) {
   const Reference prepared(reference, options);
   for (const Score& score : scores(prepared.compare(mesh), prepared)) {
     const auto value = score.percent ? score.percent : score.value;
     if (value) record.metrics[score.name()] = *value;
   }
+  const VoxelGrid grid = grid_of(model, kOccupancyGrid);
+  record.metrics["iou"] = intersection_over_union(occupancy(model, grid), occupancy({.mesh = mesh}, grid));
+}
+
+void measure_shadows(const Mesh& mesh, const MethodInput& input, Record& record) {
+  std::map<View, Drawing> drawings;
+  for (const auto& [view, picture] : input.pictures)
+    drawings.emplace(view, understand_drawing(picture, input.options.pipeline.drawing));
+  const ViewSet views = align(std::move(drawings), input.options.pipeline.align);
+  double sum = 0;
+  const VoxelGrid grid = grid_over(views.low(), views.high(), kOccupancyGrid);
+  for (const ViewAgreement& fit : agreement(occupancy({.mesh = mesh}, grid), views)) sum += fit.silhouette_iou;
+  record.metrics["silhouette_iou"] = sum / static_cast<double>(views.views.size());
+  record.metrics["disagreement"] = views.disagreement;
 }
 
 // Stages by the columns that tables have for them.
@@ -70,8 +87,9 @@ void run_cell(const fs::path& results, const std::string& spec, const Cell& cell
   record_times(output.times, record);
 
   if (subject.model)
-    measure_against(reference_of(results, *subject.model, content_hash(subject)), output.mesh, input.options.evaluate,
-                    record);
+    measure_against(*subject.model, reference_of(results, *subject.model, content_hash(subject)), output.mesh,
+                    input.options.evaluate, record);
+  measure_shadows(output.mesh, input, record);
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   record.metrics["megabytes"] = static_cast<double>(usage.ru_maxrss) / 1024;
