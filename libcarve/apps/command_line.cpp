@@ -13,13 +13,19 @@ int complain(const CLI::App& app, const char* what, ExitCode code) {
   return code;
 }
 
+std::string flag_of(const Field& field) {
+  std::string flag = "--" + field.name;
+  if (flag.ends_with(".arm")) flag.resize(flag.size() - 4);
+  for (char& c : flag)
+    if (c == '.' || c == '_') c = '-';
+  return flag;
+}
+
 }  // namespace
 
 void add_flags(CLI::App& app, std::span<const Field> fields) {
   for (const Field& field : fields) {
-    std::string flag = "--" + field.name;
-    for (char& c : flag)
-      if (c == '.' || c == '_') c = '-';
+    const std::string flag = flag_of(field);
     const auto set = [field, flag](const std::string& text) {
       try {
         field.set(text);

@@ -10,7 +10,8 @@ namespace carve {
 /// Exit codes of every program of the project.
 enum ExitCode { kDone = 0, kFailed = 1, kBadInput = 2, kCheckFailed = 3 };
 
-/// One flag a field: "smooth.steps" is --smooth-steps. The fields' structs must outlive the app.
+/// One flag a field: "smooth.steps" is --smooth-steps; the choice of a stage's arm, "consistency.arm", is
+/// --consistency. The fields' structs must outlive the app.
 void add_flags(CLI::App& app, std::span<const Field> fields);
 
 /// Parses, runs, and turns what went wrong into one line on stderr and an exit code: bad usage or input kBadInput, work

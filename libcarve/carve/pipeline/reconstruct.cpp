@@ -1,6 +1,7 @@
 #include "carve/pipeline/reconstruct.h"
 
 #include <chrono>
+#include <utility>
 
 #include "carve/surface/crossings.h"
 #include "carve/surface/marching_cubes.h"
@@ -35,6 +36,7 @@ std::vector<Field> fields(PipelineOptions& options) {
   std::vector<Field> all;
   add_fields(all, "", options.carve);
   add_fields(all, "", options);
+  add_fields(all, "consistency", options.consistency);
   add_fields(all, "drawing", options.drawing);
   add_fields(all, "align", options.align);
   add_fields(all, "smooth", options.smooth);
@@ -60,9 +62,12 @@ Reconstruction reconstruct(std::map<View, Drawing> drawings, const PipelineOptio
   for (const Field& field : fields(checked)) field.set(field.get());
 
   Reconstruction result;
-  Stages stage(monitor, 6, result.times);
+  Stages stage(monitor, 7, result.times);
   result.views = stage("align", [&] { return align(std::move(drawings), options.align); });
-  result.grid = stage("carve", [&] { return carve_silhouettes(result.views, options.carve).grid; });
+  const Carving hull = stage("carve", [&] { return carve_silhouettes(result.views, options.carve); });
+  result.consistency =
+      stage("consistency", [&] { return apply_consistency(hull, result.views, options.consistency, monitor); });
+  result.grid = std::exchange(result.consistency.grid, {});
   const Crossings crossings = stage("intersections", [&] {
     return options.intersections ? contour_crossings(result.views, result.grid) : Crossings{};
   });

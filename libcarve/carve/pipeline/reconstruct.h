@@ -6,6 +6,7 @@
 
 #include "carve/carving/carve_silhouettes.h"
 #include "carve/carving/consistency_report.h"
+#include "carve/carving/geometric_consistency.h"
 #include "carve/core/monitor.h"
 #include "carve/core/options.h"
 #include "carve/image/read_image.h"
@@ -18,6 +19,7 @@ namespace carve {
 struct PipelineOptions {
   CarveOptions carve;
   bool intersections = true;
+  ConsistencyOptions consistency;
   DrawingOptions drawing;
   AlignOptions align;
   SmoothOptions smooth;
@@ -40,6 +42,7 @@ struct StageTime {
 struct Reconstruction {
   Mesh mesh;       // solid (mesh/topology.h), object units: longest side 1, centred on x and z, standing on y = 0
   VoxelGrid grid;  // the solid the mesh was made from
+  ConsistencyResult consistency;  // its grid is empty: it became `grid`
   Topology topology;
   ViewSet views;
   std::vector<ViewAgreement> agreement;
@@ -50,7 +53,7 @@ struct Reconstruction {
 std::map<View, Drawing> read_drawings(const std::map<View, std::filesystem::path>& paths,
                                       const DrawingOptions& options = {});
 
-/// The whole way: align, carve, surface, smooth.
+/// The whole way: align, carve, consistency, surface, smooth.
 /// \throws std::invalid_argument on options or views that cannot work; NoResult if nothing is left
 Reconstruction reconstruct(std::map<View, Drawing> drawings, const PipelineOptions& options = {},
                            const Monitor& monitor = {});
