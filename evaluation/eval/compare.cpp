@@ -54,16 +54,6 @@ Mesh points_as_triangles(const Mesh& cloud) {
   return mesh;
 }
 
-double box_diagonal(const Mesh& mesh) {
-  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
-  for (const Triangle& triangle : mesh.triangles)
-    for (const int corner : triangle) {
-      low = low.cwiseMin(mesh.positions[corner]);
-      high = high.cwiseMax(mesh.positions[corner]);
-    }
-  return (high - low).norm();
-}
-
 std::vector<double> parse_tolerances(const std::vector<std::string>& texts) {
   std::vector<double> values;
   for (const std::string& text : texts) {
@@ -77,6 +67,16 @@ std::vector<double> parse_tolerances(const std::vector<std::string>& texts) {
 }
 
 }  // namespace
+
+double box_diagonal(const Mesh& mesh) {
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (const Triangle& triangle : mesh.triangles)
+    for (const int corner : triangle) {
+      low = low.cwiseMin(mesh.positions[corner]);
+      high = high.cwiseMax(mesh.positions[corner]);
+    }
+  return (high - low).norm();
+}
 
 double Distances::percentile(double p) const {
   if (sorted.empty()) return std::numeric_limits<double>::quiet_NaN();

@@ -50,6 +50,9 @@ struct Comparison {
   std::optional<std::int64_t> self_intersections;  // pairs of triangles
 };
 
+/// Diagonal of the bounding box of the triangles' corners.
+double box_diagonal(const Mesh& mesh);
+
 /// A reference, prepared once for any number of compared meshes.
 class Reference {
  public:

@@ -11,19 +11,19 @@
 #include "eval/bvh.h"
 #include "eval/morton.h"
 #include "eval/point_triangle_kernel.h"
+#include "eval/triangle_leaf.h"
 #if defined(__x86_64__) && !defined(CARVE_PORTABLE)
 #include <immintrin.h>
 #endif
 
-// Vectors are passed between inlined functions only, so their calling convention never shows.
-#pragma GCC diagnostic ignored "-Wpsabi"
-
 namespace carve {
 namespace {
 
+using kernel::Float8;
+using kernel::TriangleLeaf;
 using kernel::V3;
-using Float8 = float __attribute__((vector_size(32)));
 using Double8 = double __attribute__((vector_size(64)));
+using Stored8 = float __attribute__((vector_size(32), may_alias));
 constexpr int kWidth = Bvh::kWidth;
 
 // Every float computed below differs from its exact value by less than this share of the largest coordinate:
@@ -33,99 +33,25 @@ constexpr double kFloatError = 64.0 / (1 << 24);
 constexpr double kDoubleError = 64.0 / (1ll << 52);
 constexpr double kFar = 8;  // beyond this many half sizes floats tell too little: doubles all the way
 
-// Eight triangles, each in its own plane: corner a is the origin, b lies on the first axis at `b`, c above it.
-struct alignas(64) Leaf {
-  Float8 origin[3], u[3], v[3], n[3];  // the plane's frame
-  Float8 b;                            // length of ab
-  Float8 ac[2], ac_length;             // unit direction from a to c
-  Float8 bc[2], bc_length;             // unit direction from b to c
-};
-
 using Corners = std::array<double, 9>;
-
-Vec3 unit_or(const Vec3& v, const Vec3& otherwise) {
-  const double length = v.norm();
-  return length > 0 ? Vec3(v / length) : otherwise;
-}
-
-Vec3 any_perpendicular(const Vec3& u) {
-  int smallest;
-  u.cwiseAbs().minCoeff(&smallest);
-  return u.cross(Vec3::Unit(smallest)).normalized();
-}
-
-void store_triangle(Leaf& leaf, int lane, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 u = unit_or(b - a, unit_or(c - a, Vec3::UnitX()));
-  Vec3 rise = (c - a) - (c - a).dot(u) * u;
-  // Twice is enough: where little is left of a sliver's height, what is left must still be perpendicular.
-  rise -= rise.dot(u) * u;
-  const Vec3 v = rise.norm() > 1e-14 ? rise.normalized() : any_perpendicular(u);
-  const Vec3 n = u.cross(v);
-  for (int k = 0; k < 3; ++k) {
-    leaf.origin[k][lane] = static_cast<float>(a[k]);
-    leaf.u[k][lane] = static_cast<float>(u[k]);
-    leaf.v[k][lane] = static_cast<float>(v[k]);
-    leaf.n[k][lane] = static_cast<float>(n[k]);
-  }
-  const double length = (b - a).dot(u);
-  const Vec2 ac((c - a).dot(u), std::max(0.0, (c - a).dot(v))), bc = ac - Vec2(length, 0);
-  const Vec2 ac_unit = ac.norm() > 0 ? Vec2(ac.normalized()) : Vec2(Vec2::UnitX());
-  const Vec2 bc_unit = bc.norm() > 0 ? Vec2(bc.normalized()) : Vec2(Vec2::UnitX());
-  leaf.b[lane] = static_cast<float>(length);
-  leaf.ac_length[lane] = static_cast<float>(ac.norm());
-  leaf.bc_length[lane] = static_cast<float>(bc.norm());
-  for (int k = 0; k < 2; ++k) {
-    leaf.ac[k][lane] = static_cast<float>(ac_unit[k]);
-    leaf.bc[k][lane] = static_cast<float>(bc_unit[k]);
-  }
-}
 
 }  // namespace
 
 struct MeshDistanceTree {
   Bvh bvh;
-  std::vector<Leaf> leaves;
+  std::vector<TriangleLeaf> leaves;
   std::vector<Corners> corners;  // of every slot, as given
 };
 
 namespace {
-
-[[gnu::always_inline]] inline Float8 all(float x) { return x - Float8{}; }
-[[gnu::always_inline]] inline Float8 clamp(const Float8& x, const Float8& high) {
-  const Float8 zero{};
-  const Float8 low = x < zero ? zero : x;
-  return low > high ? high : low;
-}
-
-[[gnu::always_inline]] inline Float8 squared_distances(const Leaf& leaf, const Float8& px, const Float8& py,
-                                                       const Float8& pz) {
-  const Float8 zero{};
-  const Float8 ax = px - leaf.origin[0], ay = py - leaf.origin[1], az = pz - leaf.origin[2];
-  const Float8 x = ax * leaf.u[0] + ay * leaf.u[1] + az * leaf.u[2];
-  const Float8 y = ax * leaf.v[0] + ay * leaf.v[1] + az * leaf.v[2];
-  const Float8 z = ax * leaf.n[0] + ay * leaf.n[1] + az * leaf.n[2];
-  const Float8 ab_gap = x - clamp(x, leaf.b);
-  Float8 side = ab_gap * ab_gap + y * y;
-  const Float8 t_ac = clamp(x * leaf.ac[0] + y * leaf.ac[1], leaf.ac_length);
-  const Float8 ac_x = x - t_ac * leaf.ac[0], ac_y = y - t_ac * leaf.ac[1];
-  const Float8 ac_side = ac_x * ac_x + ac_y * ac_y;
-  side = ac_side < side ? ac_side : side;
-  const Float8 bx = x - leaf.b;
-  const Float8 t_bc = clamp(bx * leaf.bc[0] + y * leaf.bc[1], leaf.bc_length);
-  const Float8 bc_x = bx - t_bc * leaf.bc[0], bc_y = y - t_bc * leaf.bc[1];
-  const Float8 bc_side = bc_x * bc_x + bc_y * bc_y;
-  side = bc_side < side ? bc_side : side;
-  const auto inside = (y >= zero) & (leaf.ac[0] * y <= leaf.ac[1] * x) & (leaf.bc[0] * y >= leaf.bc[1] * bx);
-  return z * z + (inside ? zero : side);
-}
 
 template <class Real, class Real8>
 [[gnu::always_inline]] inline Real8 squared_distances(const BvhNode& node, const Real* p) {
   Real8 sum{};
   for (int k = 0; k < 3; ++k) {
     const Real8 zero{};
-    const Float8 low = *reinterpret_cast<const Float8*>(node.low[k]);
-    const Float8 high = *reinterpret_cast<const Float8*>(node.high[k]);
+    const Float8 low = *reinterpret_cast<const Stored8*>(node.low[k]);
+    const Float8 high = *reinterpret_cast<const Stored8*>(node.high[k]);
     const Real8 below = __builtin_convertvector(low, Real8) - p[k], above = p[k] - __builtin_convertvector(high, Real8);
     Real8 gap = below > above ? below : above;
     gap = gap > zero ? gap : zero;
@@ -144,7 +70,7 @@ struct Portable {
 #if defined(__x86_64__) && !defined(CARVE_PORTABLE)
 struct Avx2 {
   [[gnu::always_inline]] static inline unsigned bits(const Float8& values, float limit) {
-    const auto mask = values <= all(limit);
+    const auto mask = values <= kernel::all(limit);
     return static_cast<unsigned>(__builtin_ia32_movmskps256((Float8)mask));
   }
 };
@@ -215,7 +141,8 @@ class Search {
   }
 
   [[gnu::always_inline]] inline void visit_leaf(std::int32_t leaf, const float* p) {
-    const Float8 squared = squared_distances(tree_.leaves[leaf], all(p[0]), all(p[1]), all(p[2]));
+    const Float8 squared =
+        kernel::squared_distances(tree_.leaves[leaf], kernel::all(p[0]), kernel::all(p[1]), kernel::all(p[2]));
     unsigned set = Isa::bits(squared, limit_);
     if (!set) return;
     if (candidate_count_ + kWidth > kCandidates) settle();
@@ -352,8 +279,8 @@ MeshDistance::MeshDistance(const Mesh& mesh) {
       const auto [a, b, c] = mesh.triangles[slots[slot]];
       const Vec3 &pa = mesh.positions[a], &pb = mesh.positions[b], &pc = mesh.positions[c];
       tree->corners[slot] = {pa.x(), pa.y(), pa.z(), pb.x(), pb.y(), pb.z(), pc.x(), pc.y(), pc.z()};
-      store_triangle(tree->leaves[slot / kWidth], slot % kWidth, tree->bvh.inside(pa), tree->bvh.inside(pb),
-                     tree->bvh.inside(pc));
+      kernel::store_triangle(tree->leaves[slot / kWidth], slot % kWidth, tree->bvh.inside(pa), tree->bvh.inside(pb),
+                             tree->bvh.inside(pc));
     }
   });
   tree_ = std::move(tree);
