@@ -23,7 +23,7 @@ void visit_fields(DegradeOptions& o, Visitor&& field) {
   field("seed", o.seed, 0, 2147483647, "which flaws");
   field("shift", o.shift, 0.0, 1024.0, "each drawing moves by so many pixels to the left or right, and up or down");
   field("rescale", o.rescale, 0.0, 50.0, "drawings grow and shrink in turn by so many %");
-  field("jitter", o.jitter, 0.0, 64.0, "strokes waver by up to so many pixels");
+  field("jitter", o.jitter, 0.0, 64.0, "inner strokes waver by up to so many pixels along each axis");
   field("broken", o.broken, 0.0, 1.0, "share of the strokes that is rubbed out");
   field("gap", o.gap, 1.0, 1024.0, "length in pixels of what is rubbed out at a time");
   field("noise", o.noise, 0.0, 128.0, "standard deviation of the colours' noise, of 255");
@@ -38,7 +38,7 @@ struct Misplacement {
 };
 Misplacement misplacement(View view, const DegradeOptions& options);
 
-/// How far a stroke at pixel coordinates (x, y) wavers; continuous, waves about 24 pixels long.
+/// How far an inner stroke at pixel coordinates (x, y) wavers; continuous, waves about 24 pixels long.
 std::pair<double, double> waver(double x, double y, View view, const DegradeOptions& options);
 
 /// Rubs out discs at random places of the strokes until `broken` of the ink is gone. 255 = all ink.

@@ -90,7 +90,9 @@ class Strokes {
     const int s = rule_.samples;
     const double radius = (end.silhouette ? rule_.width : rule_.width / 2) * s;
     if (radius == 0) return;
-    const auto [right, down] = rule_.waver ? rule_.waver(end.x / s, end.y / s) : std::pair(0.0, 0.0);
+    // The outline stays with the silhouette that it outlines.
+    const bool wavers = rule_.waver && !end.silhouette;
+    const auto [right, down] = wavers ? rule_.waver(end.x / s, end.y / s) : std::pair(0.0, 0.0);
     const double x = end.x + right * s, y = end.y + down * s - block_.first_row;
     const int top = std::max(0, static_cast<int>(std::ceil(y - radius - 0.5)));
     const int bottom = std::min(block_.height - 1, static_cast<int>(std::floor(y + radius - 0.5)));
