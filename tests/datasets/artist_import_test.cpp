@@ -3,8 +3,8 @@
 
 #include <Eigen/Geometry>
 #include <fstream>
-#include <regex>
 #include <set>
+#include <sstream>
 
 #include "artist/manifest.h"
 #include "artist/place.h"
@@ -142,9 +142,9 @@ TEST(WriteModel, IsTheDialectAndTheSameBytesEveryTime) {
   write_model(folder / "out/thing", model, folder.path());
   const std::string obj = read_file(folder / "out/thing/thing.obj");
   std::istringstream lines(obj);
-  const std::regex dialect(
+  const auto dialect = ::testing::MatchesRegex(
       "mtllib thing.mtl|v( -?[0-9.e-]+){3}|vt( -?[0-9.e-]+){2}|usemtl m[0-9]|f( [0-9]+/[0-9]+){3}");
-  for (std::string line; std::getline(lines, line);) EXPECT_TRUE(std::regex_match(line, dialect)) << line;
+  for (std::string line; std::getline(lines, line);) EXPECT_THAT(line, dialect);
   EXPECT_THAT(obj, HasSubstr("v 0 0 0.333333333\n"));
   EXPECT_THAT(obj, HasSubstr("usemtl m1\nf 1/1 2/2 4/2\n"));
   EXPECT_EQ(
