@@ -37,6 +37,7 @@ std::vector<Field> fields(PipelineOptions& options) {
   add_fields(all, "", options.carve);
   add_fields(all, "", options);
   add_fields(all, "consistency", options.consistency);
+  add_fields(all, "convex", options.convex);
   add_fields(all, "drawing", options.drawing);
   add_fields(all, "align", options.align);
   add_fields(all, "smooth", options.smooth);
@@ -62,12 +63,14 @@ Reconstruction reconstruct(std::map<View, Drawing> drawings, const PipelineOptio
   for (const Field& field : fields(checked)) field.set(field.get());
 
   Reconstruction result;
-  Stages stage(monitor, 7, result.times);
+  Stages stage(monitor, 8, result.times);
   result.views = stage("align", [&] { return align(std::move(drawings), options.align); });
   const Carving hull = stage("carve", [&] { return carve_silhouettes(result.views, options.carve); });
   result.consistency =
       stage("consistency", [&] { return apply_consistency(hull, result.views, options.consistency, monitor); });
-  result.grid = std::exchange(result.consistency.grid, {});
+  result.grid = stage("convex", [&] {
+    return refine_convex(std::exchange(result.consistency.grid, {}), result.views, options.convex);
+  });
   const Crossings crossings = stage("intersections", [&] {
     return options.intersections ? contour_crossings(result.views, result.grid) : Crossings{};
   });

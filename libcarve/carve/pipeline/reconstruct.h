@@ -6,6 +6,7 @@
 
 #include "carve/carving/carve_silhouettes.h"
 #include "carve/carving/consistency_report.h"
+#include "carve/carving/convex_refinement.h"
 #include "carve/carving/geometric_consistency.h"
 #include "carve/core/monitor.h"
 #include "carve/core/options.h"
@@ -20,6 +21,7 @@ struct PipelineOptions {
   CarveOptions carve;
   bool intersections = true;
   ConsistencyOptions consistency;
+  ConvexOptions convex;
   DrawingOptions drawing;
   AlignOptions align;
   SmoothOptions smooth;
@@ -53,7 +55,7 @@ struct Reconstruction {
 std::map<View, Drawing> read_drawings(const std::map<View, std::filesystem::path>& paths,
                                       const DrawingOptions& options = {});
 
-/// The whole way: align, carve, consistency, surface, smooth.
+/// The whole way: align, carve, consistency, convex, surface, smooth.
 /// \throws std::invalid_argument on options or views that cannot work; NoResult if nothing is left
 Reconstruction reconstruct(std::map<View, Drawing> drawings, const PipelineOptions& options = {},
                            const Monitor& monitor = {});

@@ -1,0 +1,35 @@
+#pragma once
+#include "carve/grid/voxel_grid.h"
+#include "carve/views/view_set.h"
+
+namespace carve {
+
+struct ConvexOptions {
+  bool arm = true;
+  double evidence = 0.3;
+  double bend = 0.4;
+};
+template <class Visitor>
+void visit_fields(ConvexOptions& o, Visitor&& field) {
+  field("arm", o.arm, "parts that two drawings show curved are rounded");
+  field("evidence", o.evidence, 0.01, 1.0,
+        "share of a part's corners between two sloping outlines that makes it round");
+  field("bend", o.bend, 0.05, 100.0, "least curvature of its outlines: rms distance from lines, % of the longest side");
+}
+
+/// Convex silhouette refinement (thesis 3.1.3, Algorithm 3.5) \cite silva_2018, generalised from slices of the whole
+/// object to its parts (carving/sections.h): a section's box, which two drawings give, is filled by a scaled contour
+/// instead of a rectangle, so that three circles make a sphere and not three crossed cylinders.
+///
+/// A part is rounded where both drawings show it curved: boxes, prisms, stairs and straight tapers stay as they are.
+/// The contour is the superellipse \cite barr_1981 whose fill (area over its box's) is that of the part's own outlines;
+/// sections of `solid` that are not convex stay. Slices across all three axes are intersected.
+///
+/// The result lies inside `solid` and casts the same shadow in every view: on each ray the voxels deepest inside their
+/// sections' contours stay.
+///
+/// Arm off: `solid` itself. \param views  drawings that `solid` was carved from \throws std::invalid_argument on an
+/// option out of range
+VoxelGrid refine_convex(const VoxelGrid& solid, const ViewSet& views, const ConvexOptions& options = {});
+
+}  // namespace carve

@@ -1,0 +1,167 @@
+#include "carve/carving/convex_refinement.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "carve/carving/carve_silhouettes.h"
+#include "carve/core/parallel.h"
+#include "carve/grid/shadow.h"
+#include "shapes.h"
+
+namespace carve {
+namespace {
+
+VoxelGrid hull(const ViewSet& views, int grid) { return carve_silhouettes(views, {.grid = grid}).grid; }
+
+/// |x/a|^e + |y/b|^e + |z/c|^e <= 1, standing on y = 0.
+Shape superellipsoid(const Vec3& size, double exponent) {
+  Shape shape;
+  shape.name = "superellipsoid";
+  shape.size = size;
+  shape.volume = size.prod() * std::pow(std::tgamma(1 + 1 / exponent), 3) / std::tgamma(1 + 3 / exponent);
+  shape.spans = [=](View view, double b) {
+    const Frame axes = frame(view);
+    const double half = size[axes.up.axis] / 2, middle = axes.up.axis == 1 ? half : 0;
+    const double rest = 1 - std::pow(std::abs(b - middle) / half, exponent);
+    if (rest <= 0) return Spans{};
+    const double reach = size[axes.right.axis] / 2 * std::pow(rest, 1 / exponent);
+    return Spans{{-reach, reach}};
+  };
+  return shape;
+}
+
+/// Three to six overlapping ellipsoids, boxes between them, as seen by three cameras at the grid's resolution.
+ViewSet random_bodies(unsigned seed, bool mirrored_in_x = false) {
+  std::mt19937 random(seed);
+  const auto between = [&](double a, double b) { return a + (b - a) * (random() % 1000) / 1000; };
+  const Vec3i size(48 + static_cast<int>(random() % 24), 40, 56);
+  VoxelGrid bodies(size, Vec3::Zero(), 1);
+  for (int n = 3 + static_cast<int>(random() % 4); n > 0; --n) {
+    Vec3 centre, radii;
+    for (int a = 0; a < 3; ++a) centre[a] = between(0.25, 0.75) * size[a], radii[a] = between(0.1, 0.3) * size[a];
+    const bool box = random() % 4 == 0;
+    for (int z = 0; z < size.z(); ++z)
+      for (int y = 0; y < size.y(); ++y)
+        for (int x = 0; x < size.x(); ++x) {
+          const Vec3 out = (Vec3(x, y, z) - centre).cwiseQuotient(radii);
+          if ((box ? out.cwiseAbs().maxCoeff() * 1.4 : out.norm()) <= 1)
+            bodies.set(mirrored_in_x ? size.x() - 1 - x : x, y, z, true);
+        }
+  }
+  std::map<View, Mask> masks;
+  for (const View view : kThreeViews) masks[view] = shadow(bodies, view);
+  return views_of_masks(masks);
+}
+
+class ConvexTest : public ::testing::TestWithParam<unsigned> {
+ protected:
+  ViewSet views_ = random_bodies(GetParam());
+  VoxelGrid hull_ = hull(views_, static_cast<int>(std::lround(views_.size.maxCoeff() * 72)));
+};
+INSTANTIATE_TEST_SUITE_P(Seeds, ConvexTest, ::testing::Range(0u, 24u));
+
+TEST_P(ConvexTest, LiesInsideTheHull) { EXPECT_TRUE(contains(hull_, refine_convex(hull_, views_))); }
+
+TEST_P(ConvexTest, KeepsEveryShadow) {
+  const VoxelGrid refined = refine_convex(hull_, views_);
+  for (const View view : kViews) EXPECT_EQ(shadow(refined, view), shadow(hull_, view)) << name(view);
+}
+
+TEST_P(ConvexTest, OffIsTheIdentity) { EXPECT_EQ(refine_convex(hull_, views_, {.arm = false}), hull_); }
+
+TEST_P(ConvexTest, MirroredDrawingsGiveTheMirroredSolid) {
+  const ViewSet mirror = random_bodies(GetParam(), true);
+  const VoxelGrid refined = refine_convex(hull_, views_),
+                  other = refine_convex(hull(mirror, hull_.size().maxCoeff()), mirror);
+  ASSERT_EQ(refined.size(), other.size());
+  const Vec3i& n = refined.size();
+  for (int z = 0; z < n.z(); ++z)
+    for (int y = 0; y < n.y(); ++y)
+      for (int x = 0; x < n.x(); ++x) ASSERT_EQ(refined(x, y, z), other(n.x() - 1 - x, y, z));
+}
+
+TEST_P(ConvexTest, ThreadsDoNotChangeABit) {
+  set_thread_count(1);
+  const VoxelGrid one = refine_convex(hull_, views_);
+  set_thread_count(4);
+  const VoxelGrid four = refine_convex(hull_, views_);
+  set_thread_count(0);
+  EXPECT_EQ(one, four);
+}
+
+TEST_P(ConvexTest, NoiseIsNoFault) {
+  const Vec3i size(30, 20, 25);
+  const ViewSet views = views_of_masks(random_masks(size, GetParam()));
+  VoxelGrid full = grid_over(views.low(), views.high(), 30, Fill::full), refined = refine_convex(full, views);
+  EXPECT_TRUE(contains(full, refined));
+}
+
+TEST(Convex, SomeBodiesAreRounded) {
+  int rounded = 0;
+  for (unsigned seed = 0; seed < 24; ++seed) {
+    const ViewSet views = random_bodies(seed);
+    const VoxelGrid solid = hull(views, 72);
+    rounded += refine_convex(solid, views).count() < solid.count();
+  }
+  EXPECT_GE(rounded, 12);
+}
+
+TEST(Convex, ThreeCirclesMakeASphere) {
+  for (const int grid : {48, 64, 128}) {
+    const ViewSet views = aligned(ball(), kThreeViews, {.pixels = 512});
+    const VoxelGrid solid = hull(views, grid), sphere = refine_convex(solid, views);
+    EXPECT_GT(solid.volume(), 1.1 * ball().volume) << grid;
+    EXPECT_NEAR(sphere.volume() / ball().volume, 1, grid >= 128 ? 0.01 : 0.02) << grid;
+  }
+}
+
+TEST(Convex, ThreeEllipsesMakeAnEllipsoid) {
+  for (const Vec3& size : {Vec3(1, 0.7, 0.5), Vec3(0.4, 1, 0.6), Vec3(0.5, 0.5, 1)}) {
+    const Shape shape = superellipsoid(size, 2);
+    const ViewSet views = aligned(shape, kThreeViews, {.pixels = 512});
+    EXPECT_NEAR(refine_convex(hull(views, 128), views).volume() / shape.volume, 1, 0.015) << size.transpose();
+  }
+}
+
+TEST(Convex, SquarerOutlinesMakeSquarerSolids) {
+  for (const double exponent : {2.0, 2.5, 3.0, 4.0}) {
+    const Shape shape = superellipsoid(Vec3(1, 0.8, 0.7), exponent);
+    const ViewSet views = aligned(shape, kThreeViews, {.pixels = 512});
+    const VoxelGrid solid = hull(views, 64);
+    const double before = std::abs(solid.volume() - shape.volume);
+    EXPECT_LT(std::abs(refine_convex(solid, views).volume() - shape.volume), before) << exponent;
+  }
+}
+
+TEST(Convex, StraightThingsStayAsTheyAre) {
+  const Vec3 boxes[] = {{1, 1, 1}, {1, 0.75, 0.5}, {0.2, 1, 0.3}};
+  std::vector<Shape> straight{stairs(3), stairs(8), walled_stairs(5)};
+  for (const Vec3& size : boxes) straight.push_back(box(size));
+  for (const Shape& shape : straight)
+    for (const int grid : {32, 100, 128}) {
+      const ViewSet views = aligned(shape, kThreeViews, {.pixels = 300});
+      const VoxelGrid solid = hull(views, grid);
+      EXPECT_EQ(refine_convex(solid, views), solid) << shape.name << " " << grid;
+    }
+}
+
+TEST(Convex, AStraightTaperStaysAsItIs) {
+  Shape pyramid = box({1, 1, 1});
+  pyramid.spans = [](View view, double b) {
+    const double half = view == View::top ? 0.5 : 0.5 - 0.3 * b;
+    return Spans{{-half, half}};
+  };
+  const ViewSet views = aligned(pyramid, kThreeViews, {.pixels = 512});
+  const VoxelGrid solid = hull(views, 128);
+  EXPECT_EQ(refine_convex(solid, views), solid);
+}
+
+TEST(Convex, RefusesOptionsOutOfRange) {
+  const ViewSet views = aligned(box());
+  EXPECT_THROW(refine_convex(hull(views, 16), views, {.evidence = 2}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace carve
