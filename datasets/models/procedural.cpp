@@ -21,6 +21,7 @@ std::span<const ProceduralModel> procedural_models() {
       {"jet", "jet (Figure 4.19)", jet},
       {"armchair", "armchair: the arm hides the seat in the side view (Figure 4.20)", armchair},
       {"stairs_5", "stairs of 5 steps, each seen from the side", [] { return stairs(5, false); }},
+      {"stairs_3_walled", "stairs of 3 steps between walls", [] { return stairs(3, true); }},
       {"stairs_5_walled", "stairs of 5 steps between walls: several levels of depth (Section 5.1)",
        [] { return stairs(5, true); }},
       {"stairs_8_walled", "stairs of 8 steps between walls", [] { return stairs(8, true); }},

@@ -73,11 +73,12 @@ void run(Arguments& arguments) {
   const auto artist = artist_models(arguments.artist);
   std::vector<std::string> names;
   for (const std::string& wanted : arguments.models) {
-    if (wanted == "procedural" || wanted == "all")
+    const bool all = wanted == "all", procedural = wanted == "procedural", artists = wanted == "artist";
+    if (all || procedural)
       for (const ProceduralModel& model : procedural_models()) names.push_back(model.name);
-    if (wanted == "all")
+    if (all || artists)
       for (const auto& [name, _] : artist) names.push_back(name);
-    if (wanted != "procedural" && wanted != "all") names.push_back(wanted);
+    if (!all && !procedural && !artists) names.push_back(wanted);
   }
   for (const std::string& name : names) {
     const auto found = std::find_if(artist.begin(), artist.end(), [&](const auto& a) { return a.first == name; });
@@ -95,7 +96,7 @@ void list(const Arguments& arguments) {
 int main(int argc, char** argv) {
   CLI::App app("Orthographic concept-art drawings of base models", "synthesize");
   Arguments arguments;
-  app.add_option("--model", arguments.models, "names, procedural, or all (with those of --artist)")->delimiter(',');
+  app.add_option("--model", arguments.models, "names, procedural, artist (all of --artist), or all")->delimiter(',');
   app.add_option("--artist", arguments.artist, "a folder of models: NAME.obj or NAME/model.obj");
   app.add_option("-o,--out", arguments.out, "a folder NAME is made in it for each model")->capture_default_str();
   app.add_flag("--list", arguments.list, "print the models' names and stop");

@@ -61,6 +61,17 @@ TEST(ProceduralModels, AnUnknownNameIsAnsweredWithTheKnownOnes) {
               testing::AllOf(testing::StartsWith("model must be one of axe|"), testing::EndsWith(", got sofa")));
 }
 
+TEST(ProceduralModels, TheHeadsBrowHidesItsNoseFromAbove) {
+  const Model model = head();
+  double brow = -1, nose = -1;
+  for (const Vec3& p : model.mesh.positions) {
+    if (p.y() > 0.60 && p.y() < 0.72) brow = std::max(brow, p.z());
+    if (p.y() > 0.40 && p.y() < 0.52) nose = std::max(nose, p.z());
+  }
+  EXPECT_GT(brow, nose);
+  EXPECT_GT(nose, brow - 0.03);  // and is one nevertheless
+}
+
 TEST(Primitives, HaveTheVolumesOfTheirBodies) {
   const double pi = std::acos(-1.0);
   EXPECT_NEAR(topology(box({0, 1, 2}, {1, 3, 5})).volume, 6, 1e-12);
