@@ -8,8 +8,6 @@
 namespace carve {
 namespace {
 
-constexpr double kUnit = 1024;
-
 struct SequenceHash {
   std::size_t operator()(const std::vector<int>& s) const {
     std::uint64_t h = 1469598103934665603ULL;
@@ -43,7 +41,7 @@ class JumpCost {
       case Border::near:
         break;
     }
-    return static_cast<std::int32_t>(std::lround(kUnit * cost));
+    return static_cast<std::int32_t>(std::lround(CellProblem::kUnit * cost));
   }
 
  private:
@@ -57,7 +55,12 @@ CellProblem::CellProblem(const Cells& cells, const Vec3i& size, std::span<const 
                          const CellWeights& weights)
     : keep_(cells.count, 1), classes_of_(cells.count), contacts_(cells.count) {
   const JumpCost cost(size.maxCoeff(), weights);
+  sight_.resize(cells.count);
+  buried_ = weights.buried;
+  volume_ = cells.volume;
+  int v = -1;
   for (const RegionMap& view : views) {
+    ++v;
     const Rays rays = trace(cells, size, view.view);
     std::unordered_map<std::vector<int>, int, SequenceHash> class_of;
     std::vector<int> at(static_cast<std::size_t>(rays.width) * rays.height, -1);
@@ -69,12 +72,14 @@ CellProblem::CellProblem(const Cells& cells, const Vec3i& size, std::span<const 
         for (const RayEntry& e : ray) sequence.push_back(e.cell);
         const auto [found, fresh] = class_of.emplace(std::move(sequence), static_cast<int>(classes_.size()));
         if (fresh) {
-          classes_.push_back({static_cast<int>(order_.size()), static_cast<int>(ray.size()), 0, 0, {}});
+          classes_.push_back({static_cast<int>(order_.size()), static_cast<int>(ray.size()), 0, 0, v, 0, {}});
           for (const RayEntry& e : ray) {
             order_.push_back(e.cell);
             classes_of_[e.cell].push_back(found->second);
           }
         }
+        ++classes_[found->second].pixels;
+        for (const RayEntry& e : ray) ++sight_[e.cell][v].pixels;
         classes_[found->second].empty += std::llround(kUnit * weights.silhouette);
         at[static_cast<std::size_t>(j) * rays.width + i] = found->second;
       }
@@ -112,10 +117,16 @@ CellProblem::CellProblem(const Cells& cells, const Vec3i& size, std::span<const 
       energy_ += area;
   }
   for (const std::int64_t v : cells.volume) volume_cost_.push_back(std::llround(kUnit * weights.volume * v));
-  for (Class& c : classes_) c.first = first_of(c);
+  for (Class& c : classes_) {
+    c.first = first_of(c);
+    set_open(c, 0, std::min(c.first + 1, c.length), 1);
+  }
   for (Group& g : groups_) energy_ += g.value = value_of(g);
   class_mark_.assign(classes_.size(), 0);
   group_mark_.assign(groups_.size(), 0);
+  touch_mark_.assign(cells.count, 0);
+  buried_now_.assign(cells.count, 0);
+  touched_.clear();
 }
 
 int CellProblem::first_of(const Class& c) const {
@@ -128,6 +139,22 @@ std::int64_t CellProblem::value_of(const Group& g) const {
   const Class &a = classes_[g.a], &b = classes_[g.b];
   if (a.first == a.length || b.first == b.length) return 0;
   return tables_[g.table + a.first * b.length + b.first];
+}
+
+void CellProblem::set_open(const Class& c, int from, int to, int sign) {
+  for (int k = from; k < to; ++k) {
+    const int cell = order_[c.begin + k];
+    sight_[cell][c.view].open += sign * c.pixels;
+    touched_.push_back(cell);
+  }
+}
+
+std::int64_t CellProblem::buried_cost(int cell) const {
+  if (keep_[cell]) return 0;
+  double seen = 0;
+  for (const Sight& s : sight_[cell])
+    if (s.pixels > 0) seen += static_cast<double>(s.open) / s.pixels;
+  return std::llround(kUnit * buried_ * volume_[cell] * std::max(0.0, 2 - seen));
 }
 
 std::int64_t CellProblem::flip(std::span<const int> cells) {
@@ -151,6 +178,10 @@ std::int64_t CellProblem::flip(std::span<const int> cells) {
       if (first == ray.first) continue;
       if (ray.first == ray.length) energy_ -= ray.empty;
       if (first == ray.length) energy_ += ray.empty;
+      // A cell is open to a ray as long as nothing is kept before it: up to and with the first kept one.
+      const int was = std::min(ray.first + 1, ray.length), now = std::min(first + 1, ray.length);
+      if (now > was) set_open(ray, was, now, 1);
+      if (now < was) set_open(ray, now, was, -1);
       ray.first = first;
       changed.push_back(k);
     }
@@ -161,6 +192,14 @@ std::int64_t CellProblem::flip(std::span<const int> cells) {
       energy_ -= groups_[g].value;
       energy_ += groups_[g].value = value_of(groups_[g]);
     }
+  for (const int c : cells) touched_.push_back(c);
+  for (const int c : touched_) {
+    if (touch_mark_[c] == stamp_) continue;
+    touch_mark_[c] = stamp_;
+    energy_ -= buried_now_[c];
+    energy_ += buried_now_[c] = buried_cost(c);
+  }
+  touched_.clear();
   return energy_ - before;
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <span>
 #include <vector>
 
@@ -11,8 +12,9 @@ struct CellWeights {
   double unexplained = 1;  // a depth jump where no stroke is
   double colour = 0.5;     // a depth jump where only a colour boundary is
   double open = 0.5;       // an open stroke without a depth jump
-  double area = 0.01;      // a voxel face of surface
-  double volume = 0.0005;  // a voxel dropped
+  double area = 0.003;     // a voxel face of surface
+  double volume = 0.0001;  // a dropped voxel
+  double buried = 0.001;   // a dropped voxel, times the views that it lacks to be seen empty in two
   double silhouette = 50;  // a pixel whose ray meets no voxel any more
 };
 
@@ -24,6 +26,7 @@ void visit_fields(CellWeights& o, Visitor&& field) {
   field("open", o.open, 0.0, 1e3, "cost of an open stroke without a depth jump, a grid pixel's side");
   field("area", o.area, 0.0, 1e3, "cost of surface, a voxel's face");
   field("volume", o.volume, 0.0, 1e3, "cost of carving, a voxel");
+  field("buried", o.buried, 0.0, 1e3, "cost of carving what fewer than two views see empty, a voxel and missing view");
   field("silhouette", o.silhouette, 0.0, 1e6, "cost of a pixel whose ray meets no voxel any more");
 }
 
@@ -33,6 +36,8 @@ void visit_fields(CellWeights& o, Visitor&& field) {
 /// first hits is a table. Everything is in whole numbers (1/1024), so that steps add up exactly.
 class CellProblem {
  public:
+  static constexpr double kUnit = 1024;
+
   CellProblem(const Cells& cells, const Vec3i& size, std::span<const RegionMap> views, const CellWeights& weights);
 
   int cells() const { return static_cast<int>(keep_.size()); }
@@ -45,6 +50,8 @@ class CellProblem {
     int begin, length;   // in order_
     int first;           // position of the first kept cell; length if none
     std::int64_t empty;  // cost if none
+    int view;
+    std::int64_t pixels;
     std::vector<int> groups;
   };
   struct Group {
@@ -55,7 +62,12 @@ class CellProblem {
     int other;  // -1: outside
     std::int64_t cost;
   };
+  struct Sight {
+    std::int64_t pixels = 0, open = 0;  // rays that meet the cell; those that meet nothing before it
+  };
   int first_of(const Class& c) const;
+  std::int64_t buried_cost(int cell) const;
+  void set_open(const Class& c, int from, int to, int sign);
   std::int64_t value_of(const Group& g) const;
 
   std::vector<std::uint8_t> keep_;
@@ -65,7 +77,11 @@ class CellProblem {
   std::vector<std::int32_t> tables_;
   std::vector<std::vector<int>> classes_of_;  // per cell
   std::vector<std::vector<Contact>> contacts_;
-  std::vector<std::int64_t> volume_cost_;
+  std::vector<std::int64_t> volume_cost_, volume_;
+  double buried_ = 0;
+  std::vector<std::array<Sight, 6>> sight_;  // per cell and view
+  std::vector<std::int64_t> buried_now_;
+  std::vector<int> touched_, touch_mark_;
   std::vector<int> class_mark_, group_mark_;
   int stamp_ = 0;
   std::int64_t energy_ = 0;

@@ -6,135 +6,209 @@
 namespace carve {
 namespace {
 
-/// The cells behind one region of a view, nearest first.
-struct Column {
-  std::vector<int> cells;
+/// Which cells hide which, and the columns of cells that are decided together.
+struct Order {
+  std::vector<std::vector<int>> columns;                        // behind one region of a view: nearest first
+  std::array<std::vector<std::vector<int>>, 6> before, behind;  // per view and cell: met directly before, after it
 };
 
-std::vector<Column> columns_of(const Cells& cells, const Vec3i& size, std::span<const RegionMap> views) {
-  std::vector<Column> out;
+Order order_of(const Cells& cells, const Vec3i& size, std::span<const RegionMap> views) {
+  Order out;
   for (std::size_t v = 0; v < views.size(); ++v) {
     const Rays rays = trace(cells, size, views[v].view);
-    std::vector<double> sum(cells.count, 0);
-    std::vector<int> seen(cells.count, 0);
+    std::vector<std::int64_t> sum(cells.count, 0), seen(cells.count, 0);
     for (const RayEntry& e : rays.entries) {
       sum[e.cell] += e.depth;
       ++seen[e.cell];
     }
-    std::vector<Column> of_region(views[v].count);
-    for (int c = 0; c < cells.count; ++c) of_region[cells.regions[c][v]].cells.push_back(c);
-    for (Column& column : of_region) {
-      std::ranges::stable_sort(column.cells, [&](int a, int b) { return sum[a] * seen[b] < sum[b] * seen[a]; });
-      if (!column.cells.empty()) out.push_back(std::move(column));
+    std::vector<std::vector<int>> of_region(views[v].count);
+    for (int c = 0; c < cells.count; ++c) of_region[cells.regions[c][v]].push_back(c);
+    for (std::vector<int>& column : of_region) {
+      std::ranges::stable_sort(column, [&](int a, int b) { return sum[a] * seen[b] < sum[b] * seen[a]; });
+      if (column.size() > 1) out.columns.push_back(std::move(column));
     }
+    out.before[v].resize(cells.count);
+    out.behind[v].resize(cells.count);
+    for (std::size_t p = 0; p + 1 < rays.begin.size(); ++p)
+      for (int k = rays.begin[p] + 1; k < rays.begin[p + 1]; ++k) {
+        const int front = rays.entries[k - 1].cell, back = rays.entries[k].cell;
+        if (std::ranges::count(out.before[v][back], front)) continue;
+        out.before[v][back].push_back(front);
+        out.behind[v][front].push_back(back);
+      }
   }
   return out;
 }
 
-class Descent {
+/// splitmix64: the same numbers everywhere.
+class Random {
  public:
-  Descent(CellProblem& problem, std::vector<Column> columns, std::int64_t limit)
-      : problem_(problem), columns_(std::move(columns)), limit_(limit) {}
-
-  CellSearch run() {
-    while (step()) {
-    }
-    anneal();
-    while (step()) {
-    }
-    return search_;
-  }
-
- private:
-  void consider(const std::vector<int>& flips) {
-    if (flips.empty() || search_.nodes >= limit_) return;
-    ++search_.nodes;
-    const std::int64_t change = problem_.flip(flips);
-    problem_.flip(flips);
-    if (change < best_change_) {
-      best_change_ = change;
-      best_ = flips;
-    }
-  }
-
-  std::uint64_t random() {
-    state_ += 0x9e3779b97f4a7c15ULL;
-    std::uint64_t z = state_;
+  std::uint64_t operator()() {
+    std::uint64_t z = state_ += 0x9e3779b97f4a7c15ULL;
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
     return z ^ (z >> 31);
   }
+  std::size_t below(std::size_t n) { return (*this)() % n; }
+  double unit() { return ((*this)() >> 11) * 0x1p-53; }
+
+ private:
+  std::uint64_t state_ = 1;
+};
+
+class Search {
+ public:
+  Search(CellProblem& problem, Order order, int views, std::int64_t limit)
+      : problem_(problem), order_(std::move(order)), views_(views), limit_(limit), mark_(problem.cells(), 0) {}
+
+  std::int64_t run() {
+    descend();
+    anneal();
+    descend();
+    return nodes_;
+  }
+
+ private:
+  bool out_of_nodes() const { return nodes_ >= limit_; }
+  void flip(int cell) {
+    ++nodes_;
+    problem_.flip(std::span(&cell, 1));
+  }
+
+  /// The cell and all that hide it in two views, as far as they are kept: dropping them, it is seen empty in both. The
+  /// other way round, the cell and all that it hides there, as far as they are dropped.
+  void open_or_fill(int cell, int v, int w, bool drop, std::vector<int>& move) {
+    constexpr std::size_t kMost = 256;
+    move.clear();
+    ++stamp_;
+    queue_.assign(1, cell);
+    mark_[cell] = stamp_;
+    for (std::size_t k = 0; k < queue_.size() && move.size() < kMost; ++k) {
+      const int c = queue_[k];
+      if (problem_.keep()[c] == drop) move.push_back(c);
+      for (const int view : {v, w})
+        for (const int n : (drop ? order_.before : order_.behind)[view][c])
+          if (mark_[n] != stamp_) {
+            mark_[n] = stamp_;
+            queue_.push_back(n);
+          }
+    }
+  }
+
+  void try_move(const std::vector<int>& move) {
+    const std::int64_t energy = problem_.energy();
+    nodes_ += static_cast<std::int64_t>(move.size());
+    problem_.flip(move);
+    if (problem_.energy() >= energy) problem_.flip(move);
+  }
+
+  void descend() {
+    for (std::int64_t before = problem_.energy() + 1; problem_.energy() < before && !out_of_nodes();) {
+      before = problem_.energy();
+      std::vector<int> move;
+      for (int c = 0; c < problem_.cells(); ++c)
+        for (int v = 0; v < views_; ++v)
+          for (int w = 0; w < v; ++w) {
+            if (out_of_nodes()) return;
+            open_or_fill(c, v, w, problem_.keep()[c], move);
+            try_move(move);
+          }
+      for (const std::vector<int>& column : order_.columns) {
+        if (out_of_nodes()) return;
+        try_in_order(column, true);
+        try_in_order(std::vector<int>(column.rbegin(), column.rend()), false);
+        try_levels(column);
+      }
+      for (int c = 0; c < problem_.cells() && !out_of_nodes(); ++c) {
+        const std::int64_t energy = problem_.energy();
+        flip(c);
+        if (problem_.energy() >= energy) flip(c);
+      }
+    }
+  }
+
+  /// Drops (or restores) the first n cells of those that are kept (dropped), for the best n.
+  void try_in_order(const std::vector<int>& order, bool kept) {
+    std::vector<int> flipped;
+    std::size_t best = 0;
+    std::int64_t best_energy = problem_.energy();
+    for (const int c : order) {
+      if (problem_.keep()[c] != kept) continue;
+      flip(c);
+      flipped.push_back(c);
+      if (problem_.energy() < best_energy) best_energy = problem_.energy(), best = flipped.size();
+    }
+    for (; flipped.size() > best; flipped.pop_back()) flip(flipped.back());
+  }
+
+  /// Drops the first n cells and keeps the rest, for the best n, if that is better than what is.
+  void try_levels(const std::vector<int>& column) {
+    const std::int64_t energy = problem_.energy();
+    std::vector<std::uint8_t> before;
+    for (const int c : column) before.push_back(problem_.keep()[c]);
+    for (const int c : column)
+      if (!problem_.keep()[c]) flip(c);
+    std::size_t best = 0;
+    std::int64_t best_energy = problem_.energy();
+    for (std::size_t n = 1; n <= column.size(); ++n) {
+      flip(column[n - 1]);
+      if (problem_.energy() < best_energy) best_energy = problem_.energy(), best = n;
+    }
+    const bool better = best_energy < energy;
+    for (std::size_t k = 0; k < column.size(); ++k)
+      if ((better ? k >= best : before[k]) != problem_.keep()[column[k]]) flip(column[k]);
+  }
+
   void anneal() {
-    constexpr long steps = 20000;
-    constexpr double t0 = 100;
+    constexpr double kHot = 50, kCold = 1;  // in units of the energy: sides of grid pixels
+    const std::int64_t start = nodes_, steps = (limit_ - nodes_) * 9 / 10;
+    if (problem_.cells() == 0 || steps <= 0) return;
     std::vector<std::uint8_t> best(problem_.keep().begin(), problem_.keep().end());
     std::int64_t best_energy = problem_.energy();
-    for (long k = 0; k < steps && search_.nodes < limit_; ++k) {
-      const double t = 1024 * t0 * std::pow(0.005, static_cast<double>(k) / steps);
-      std::vector<int> set;
-      if (random() % 2) {
-        set.push_back(random() % problem_.cells());
-      } else {
-        const Column& column = columns_[random() % columns_.size()];
-        const std::size_t level = random() % column.cells.size();
-        for (std::size_t i = 0; i < column.cells.size(); ++i)
-          if (problem_.keep()[column.cells[i]] != (i >= level)) set.push_back(column.cells[i]);
-      }
-      if (set.empty()) continue;
-      ++search_.nodes;
-      const std::int64_t change = problem_.flip(set);
-      if (change > 0 && (random() >> 11) * 0x1p-53 >= std::exp(-change / t)) {
-        problem_.flip(set);
-        continue;
-      }
-      if (problem_.energy() < best_energy) {
+    std::vector<int> move;
+    while (nodes_ - start < steps) {
+      const double done = static_cast<double>(nodes_ - start) / steps;
+      const double temperature = CellProblem::kUnit * kHot * std::pow(kCold / kHot, done);
+      random_move(move);
+      const std::int64_t energy = problem_.energy();
+      problem_.flip(move);
+      const std::int64_t change = problem_.energy() - energy;
+      if (change > 0 && random_.unit() >= std::exp(-change / temperature)) {
+        problem_.flip(move);
+      } else if (problem_.energy() < best_energy) {
         best_energy = problem_.energy();
         best.assign(problem_.keep().begin(), problem_.keep().end());
       }
+      nodes_ += 1 + static_cast<std::int64_t>(move.size());
     }
-    std::vector<int> back;
     for (int c = 0; c < problem_.cells(); ++c)
-      if (problem_.keep()[c] != best[c]) back.push_back(c);
-    problem_.flip(back);
+      if (problem_.keep()[c] != best[c]) flip(c);
   }
-  std::uint64_t state_ = 1;
 
-  bool step() {
-    best_change_ = 0;
-    best_.clear();
-    for (int c = 0; c < problem_.cells(); ++c) consider({c});
-    for (const Column& column : columns_) {
-      std::vector<int> drop;
-      for (const int c : column.cells) {
-        if (!problem_.keep()[c]) continue;
-        drop.push_back(c);
-        if (drop.size() > 1) consider(drop);
-      }
-      std::vector<int> restore;
-      for (auto c = column.cells.rbegin(); c != column.cells.rend(); ++c) {
-        if (problem_.keep()[*c]) continue;
-        restore.push_back(*c);
-        if (restore.size() > 1) consider(restore);
-      }
-      for (std::size_t level = 0; level < column.cells.size(); ++level) {
-        std::vector<int> set;
-        for (std::size_t k = 0; k < column.cells.size(); ++k)
-          if (problem_.keep()[column.cells[k]] != (k >= level)) set.push_back(column.cells[k]);
-        consider(set);
-      }
+  /// By turns one cell; one opened or filled in two views; a column dropped up to some cell and kept behind it.
+  void random_move(std::vector<int>& move) {
+    const std::size_t kind = random_.below(4);
+    const int cell = static_cast<int>(random_.below(problem_.cells()));
+    move.assign(1, cell);
+    if (kind == 2 && views_ > 1) {
+      const int v = static_cast<int>(random_.below(views_)), w = static_cast<int>(random_.below(views_ - 1));
+      open_or_fill(cell, v, w < v ? w : w + 1, problem_.keep()[cell], move);
+    } else if (kind == 3 && !order_.columns.empty()) {
+      const std::vector<int>& column = order_.columns[random_.below(order_.columns.size())];
+      const std::size_t level = random_.below(column.size() + 1);
+      move.clear();
+      for (std::size_t k = 0; k < column.size(); ++k)
+        if (problem_.keep()[column[k]] != (k >= level)) move.push_back(column[k]);
     }
-    if (best_.empty()) return false;
-    problem_.flip(best_);
-    if (search_.nodes > limit_) search_.finished = false;
-    return search_.finished;
   }
 
   CellProblem& problem_;
-  std::vector<Column> columns_;
-  std::int64_t limit_;
-  CellSearch search_;
-  std::int64_t best_change_ = 0;
-  std::vector<int> best_;
+  Order order_;
+  int views_;
+  std::int64_t limit_, nodes_ = 0;
+  std::vector<int> queue_, mark_;
+  int stamp_ = 0;
+  Random random_;
 };
 
 }  // namespace
@@ -152,9 +226,9 @@ std::int64_t drop_in_one_pass(CellProblem& problem) {
   return problem.cells() + static_cast<std::int64_t>(gains.size());
 }
 
-CellSearch descend(CellProblem& problem, const Cells& cells, const Vec3i& size, std::span<const RegionMap> views,
-                   std::int64_t node_limit) {
-  return Descent(problem, columns_of(cells, size, views), node_limit).run();
+std::int64_t search_cells(CellProblem& problem, const Cells& cells, const Vec3i& size, std::span<const RegionMap> views,
+                          std::int64_t limit) {
+  return Search(problem, order_of(cells, size, views), static_cast<int>(views.size()), limit).run();
 }
 
 }  // namespace carve

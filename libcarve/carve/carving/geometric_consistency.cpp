@@ -42,7 +42,7 @@ Carved two_level(const Input& in) {
 
 Carved solver(const Input& in) {
   return by_cells(in, [&](CellProblem& problem, const Cells& cells) {
-    return descend(problem, cells, in.hull.grid.size(), in.regions, in.options.nodes).nodes;
+    return search_cells(problem, cells, in.hull.grid.size(), in.regions, in.options.nodes);
   });
 }
 
