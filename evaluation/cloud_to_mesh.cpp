@@ -1,10 +1,11 @@
 #include <iostream>
 
 #include "apps/command_line.h"
-#include "carve/core/error.h"
 #include "carve/core/file.h"
 #include "carve/core/parallel.h"
 #include "carve/mesh/mesh_io.h"
+#include "eval/about.h"
+#include "eval/error_split.h"
 #include "eval/report.h"
 
 namespace {
@@ -15,19 +16,9 @@ struct Arguments {
   std::vector<fs::path> compared;
   fs::path reference, csv;
   CompareOptions options;
-  bool json = false;
+  bool json = false, split = false;
   int threads = 0;
 };
-
-// What the library says of a mesh, with the name of its file.
-template <class Work>
-auto about(const fs::path& file, const Work& work) {
-  try {
-    return work();
-  } catch (const std::invalid_argument& error) {
-    throw IoError(file.string(), error.what());
-  }
-}
 
 int compare(const Arguments& arguments) {
   set_thread_count(arguments.threads);
@@ -37,16 +28,19 @@ int compare(const Arguments& arguments) {
   const ReportHead head{arguments.reference.string(), reference.mesh().positions.size(),
                         reference.mesh().triangles.size(), reference.diagonal(), arguments.options};
   std::vector<Row> rows;
+  std::vector<Stage> stages;
   for (const fs::path& file : arguments.compared) {
     const Mesh mesh = read_mesh(file);
     const Comparison comparison = about(file, [&] { return reference.compare(mesh); });
     rows.push_back({file.string(), mesh.positions.size(), mesh.triangles.size(), scores(comparison, reference)});
+    if (arguments.split) stages.push_back({file.stem().string(), mesh});
   }
   if (!arguments.csv.empty()) write_file(arguments.csv, [&](std::ostream& out) { write_csv(out, head, rows); });
   if (arguments.json)
     std::cout << to_json(head, rows) << '\n';
   else
     write_text(std::cout, head, rows);
+  if (arguments.split) std::cout << "\nsplit of chamfer_l1\n" << split_error(reference, stages);
   return kDone;
 }
 
@@ -61,7 +55,10 @@ int main(int argc, char** argv) {
   app.add_option("--reference", arguments.reference, "the mesh they are measured against")
       ->required()
       ->type_name("FILE");
-  app.add_flag("--json", arguments.json, "JSON on standard output");
+  const auto json = app.add_flag("--json", arguments.json, "JSON on standard output");
+  app.add_flag("--split", arguments.split,
+               "the compared meshes are stages (exact hull, voxels, result): what each adds to the error")
+      ->excludes(json);
   app.add_option("--csv", arguments.csv, "also write a line a file and metric")->type_name("FILE");
   app.add_option("--threads", arguments.threads, "threads to use; 0 = all cores; never changes the result")
       ->check(CLI::Range(0, 1024));

@@ -3,10 +3,9 @@
 #include <iostream>
 
 #include "apps/command_line.h"
-#include "carve/core/error.h"
 #include "carve/core/parallel.h"
-#include "carve/image/read_image.h"
 #include "carve/mesh/mesh_io.h"
+#include "eval/about.h"
 #include "eval/compare.h"
 
 namespace {
@@ -21,33 +20,15 @@ struct Arguments {
   int threads = 0;
 };
 
-void write(const fs::path& path, const std::vector<HeatMap>& maps, const Mesh& reference, double diagonal,
-           const Arguments& arguments) {
-  const double range = heat_range(maps, diagonal, arguments.options);
-  if (path.extension() == ".png")
-    write_png(path, draw_heat_maps(maps, reference, diagonal, arguments.options));
-  else if (path.extension() == ".ply")
-    write_heat_ply(path, maps[0], arguments.options.ramp, range);
-  else
-    write_heat_vtp(path, maps[0], arguments.options.ramp, range);
-}
-
 int draw(const Arguments& arguments) {
   set_thread_count(arguments.threads);
   check("", arguments.options);
-  for (const fs::path& path : arguments.out) {
-    const std::string ending = path.extension().string();
-    if (ending != ".png" && ending != ".ply" && ending != ".vtp")
-      throw std::invalid_argument(path.string() + ": the output must end in .png, .ply or .vtp");
-    if (ending != ".png" && arguments.compared.size() > 1)
-      throw std::invalid_argument(path.string() + ": holds one compared mesh, got " +
-                                  std::to_string(arguments.compared.size()));
-  }
+  for (const fs::path& path : arguments.out) check_heat_output(path, arguments.compared.size());
   if (!arguments.titles.empty() && arguments.titles.size() != arguments.compared.size())
     throw std::invalid_argument("titles must be one a compared mesh");
   const Mesh reference = read_mesh(arguments.reference);
   const double diagonal = box_diagonal(reference);
-  const MeshDistance distance(reference);
+  const auto distance = about(arguments.reference, [&] { return MeshDistance(reference); });
   std::vector<HeatMap> maps;
   for (const fs::path& file : arguments.compared) {
     const std::string title = arguments.titles.empty() ? file.stem().string() : arguments.titles[maps.size()];
@@ -55,7 +36,7 @@ int draw(const Arguments& arguments) {
     map.distances = signed_distances(map.mesh.positions, distance.nearest(map.mesh.positions), reference);
     maps.push_back(std::move(map));
   }
-  for (const fs::path& path : arguments.out) write(path, maps, reference, diagonal, arguments);
+  for (const fs::path& path : arguments.out) write_heat_maps(path, maps, reference, diagonal, arguments.options);
   const double range = heat_range(maps, diagonal, arguments.options);
   std::cout << "range " << 100 * range / diagonal << " % of the reference's diagonal (" << range << ")\n";
   for (const HeatMap& map : maps)

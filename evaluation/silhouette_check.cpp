@@ -2,10 +2,10 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/command_line.h"
-#include "carve/core/error.h"
 #include "carve/core/parallel.h"
 #include "carve/image/read_image.h"
 #include "carve/mesh/mesh_io.h"
+#include "eval/about.h"
 #include "eval/silhouette.h"
 
 namespace {
@@ -36,7 +36,9 @@ int check_silhouettes(const Arguments& arguments) {
   for (const auto& [view, path] : arguments.drawings)
     if (!path.empty()) drawings[view] = read_drawing(path, arguments.drawing);
   const ViewSet views = align(std::move(drawings), arguments.align);
-  const SilhouetteScores scores = silhouette_scores(mesh, views, arguments.options);
+  const SilhouetteScores scores =
+      about(arguments.mesh, [&] { return silhouette_scores(mesh, views, arguments.options); });
+
   if (!arguments.overlays.empty())
     for (const ViewScore& v : scores.views)
       write_png(arguments.overlays / (std::string(name(v.view)) + ".png"), v.overlay);

@@ -1,9 +1,12 @@
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstring>
 #include <ostream>
+#include <stdexcept>
 
 #include "carve/core/file.h"
+#include "carve/image/read_image.h"
 #include "eval/heat_map.h"
 
 namespace carve {
@@ -101,6 +104,26 @@ void write_heat_vtp(const std::filesystem::path& path, const HeatMap& map, Ramp 
         << xml << "    </Piece>\n  </PolyData>\n  <AppendedData encoding=\"raw\">\n_" << data
         << "\n  </AppendedData>\n</VTKFile>\n";
   });
+}
+
+void check_heat_output(const std::filesystem::path& path, std::size_t maps) {
+  const std::string ending = path.extension().string();
+  if (ending != ".png" && ending != ".ply" && ending != ".vtp")
+    throw std::invalid_argument(path.string() + ": the output must end in .png, .ply or .vtp");
+  if (ending != ".png" && maps != 1)
+    throw std::invalid_argument(path.string() + ": holds one compared mesh, got " + std::to_string(maps));
+}
+
+void write_heat_maps(const std::filesystem::path& path, const std::vector<HeatMap>& maps, const Mesh& reference,
+                     double diagonal, const HeatMapOptions& options) {
+  check_heat_output(path, maps.size());
+  const double range = heat_range(maps, diagonal, options);
+  if (path.extension() == ".png")
+    write_png(path, draw_heat_maps(maps, reference, diagonal, options));
+  else if (path.extension() == ".ply")
+    write_heat_ply(path, maps[0], options.ramp, range);
+  else
+    write_heat_vtp(path, maps[0], options.ramp, range);
 }
 
 }  // namespace carve

@@ -50,4 +50,11 @@ void write_heat_ply(const std::filesystem::path& path, const HeatMap& map, Ramp 
 /// VTK XML PolyData for ParaView: point data `C2M` and `colour`. \throws IoError
 void write_heat_vtp(const std::filesystem::path& path, const HeatMap& map, Ramp ramp, double range);
 
+/// Refuses what write_heat_maps cannot do before anything is computed. \throws std::invalid_argument: another ending
+/// than .png, .ply or .vtp; several meshes for one .ply or .vtp
+void check_heat_output(const std::filesystem::path& path, std::size_t maps);
+/// A figure of all maps (.png) or the one coloured mesh (.ply, .vtp), by the name's ending.
+void write_heat_maps(const std::filesystem::path& path, const std::vector<HeatMap>& maps, const Mesh& reference,
+                     double diagonal, const HeatMapOptions& options = {});
+
 }  // namespace carve
