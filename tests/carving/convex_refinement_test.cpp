@@ -8,10 +8,16 @@
 #include "carve/carving/carve_silhouettes.h"
 #include "carve/core/parallel.h"
 #include "carve/grid/shadow.h"
+#include "carve/mesh/topology.h"
+#include "carve/surface/marching_cubes.h"
 #include "shapes.h"
 
 namespace carve {
 namespace {
+
+VoxelGrid refined(const VoxelGrid& solid, const ViewSet& views, const ConvexOptions& options = {}) {
+  return refine_convex(solid, views, options).grid;
+}
 
 VoxelGrid hull(const ViewSet& views, int grid) { return carve_silhouettes(views, {.grid = grid}).grid; }
 
@@ -62,31 +68,30 @@ class ConvexTest : public ::testing::TestWithParam<unsigned> {
 };
 INSTANTIATE_TEST_SUITE_P(Seeds, ConvexTest, ::testing::Range(0u, 24u));
 
-TEST_P(ConvexTest, LiesInsideTheHull) { EXPECT_TRUE(contains(hull_, refine_convex(hull_, views_))); }
+TEST_P(ConvexTest, LiesInsideTheHull) { EXPECT_TRUE(contains(hull_, refined(hull_, views_))); }
 
 TEST_P(ConvexTest, KeepsEveryShadow) {
-  const VoxelGrid refined = refine_convex(hull_, views_);
-  for (const View view : kViews) EXPECT_EQ(shadow(refined, view), shadow(hull_, view)) << name(view);
+  const VoxelGrid solid = refined(hull_, views_);
+  for (const View view : kViews) EXPECT_EQ(shadow(solid, view), shadow(hull_, view)) << name(view);
 }
 
-TEST_P(ConvexTest, OffIsTheIdentity) { EXPECT_EQ(refine_convex(hull_, views_, {.arm = false}), hull_); }
+TEST_P(ConvexTest, OffIsTheIdentity) { EXPECT_EQ(refined(hull_, views_, {.arm = false}), hull_); }
 
 TEST_P(ConvexTest, MirroredDrawingsGiveTheMirroredSolid) {
   const ViewSet mirror = random_bodies(GetParam(), true);
-  const VoxelGrid refined = refine_convex(hull_, views_),
-                  other = refine_convex(hull(mirror, hull_.size().maxCoeff()), mirror);
-  ASSERT_EQ(refined.size(), other.size());
-  const Vec3i& n = refined.size();
+  const VoxelGrid solid = refined(hull_, views_), other = refined(hull(mirror, hull_.size().maxCoeff()), mirror);
+  ASSERT_EQ(solid.size(), other.size());
+  const Vec3i& n = solid.size();
   for (int z = 0; z < n.z(); ++z)
     for (int y = 0; y < n.y(); ++y)
-      for (int x = 0; x < n.x(); ++x) ASSERT_EQ(refined(x, y, z), other(n.x() - 1 - x, y, z));
+      for (int x = 0; x < n.x(); ++x) ASSERT_EQ(solid(x, y, z), other(n.x() - 1 - x, y, z));
 }
 
 TEST_P(ConvexTest, ThreadsDoNotChangeABit) {
   set_thread_count(1);
-  const VoxelGrid one = refine_convex(hull_, views_);
+  const VoxelGrid one = refined(hull_, views_);
   set_thread_count(4);
-  const VoxelGrid four = refine_convex(hull_, views_);
+  const VoxelGrid four = refined(hull_, views_);
   set_thread_count(0);
   EXPECT_EQ(one, four);
 }
@@ -94,8 +99,8 @@ TEST_P(ConvexTest, ThreadsDoNotChangeABit) {
 TEST_P(ConvexTest, NoiseIsNoFault) {
   const Vec3i size(30, 20, 25);
   const ViewSet views = views_of_masks(random_masks(size, GetParam()));
-  VoxelGrid full = grid_over(views.low(), views.high(), 30, Fill::full), refined = refine_convex(full, views);
-  EXPECT_TRUE(contains(full, refined));
+  const VoxelGrid full = grid_over(views.low(), views.high(), 30, Fill::full);
+  EXPECT_TRUE(contains(full, refined(full, views)));
 }
 
 TEST(Convex, SomeBodiesAreRounded) {
@@ -103,7 +108,7 @@ TEST(Convex, SomeBodiesAreRounded) {
   for (unsigned seed = 0; seed < 24; ++seed) {
     const ViewSet views = random_bodies(seed);
     const VoxelGrid solid = hull(views, 72);
-    rounded += refine_convex(solid, views).count() < solid.count();
+    rounded += refined(solid, views).count() < solid.count();
   }
   EXPECT_GE(rounded, 12);
 }
@@ -111,17 +116,60 @@ TEST(Convex, SomeBodiesAreRounded) {
 TEST(Convex, ThreeCirclesMakeASphere) {
   for (const int grid : {48, 64, 128}) {
     const ViewSet views = aligned(ball(), kThreeViews, {.pixels = 512});
-    const VoxelGrid solid = hull(views, grid), sphere = refine_convex(solid, views);
+    const VoxelGrid solid = hull(views, grid), sphere = refined(solid, views);
     EXPECT_GT(solid.volume(), 1.1 * ball().volume) << grid;
     EXPECT_NEAR(sphere.volume() / ball().volume, 1, grid >= 128 ? 0.01 : 0.02) << grid;
   }
+}
+
+/// Root mean square distance of a mesh's vertices from a ball's surface.
+double roughness(const Mesh& mesh) {
+  double squares = 0;
+  for (const Vec3& p : mesh.positions) squares += std::pow((p - Vec3(0, 0.5, 0)).norm() - 0.5, 2);
+  return std::sqrt(squares / mesh.positions.size());
+}
+
+TEST(Convex, TheSpheresMeshIsSmoothAndSolid) {
+  for (const int grid : {64, 128}) {
+    const ViewSet views = aligned(ball(), kThreeViews, {.pixels = 512});
+    const Refinement sphere = refine_convex(hull(views, grid), views);
+    Crossings crossings = contour_crossings(views, sphere.grid);
+    const Mesh stepped = marching_cubes(sphere.grid, crossings);
+    crossings.edges = sphere.crossings;
+    const Mesh smooth = marching_cubes(sphere.grid, crossings);
+    EXPECT_TRUE(topology(smooth).solid()) << topology(smooth);
+    EXPECT_NEAR(topology(smooth).volume / ball().volume, 1, 0.01) << grid;
+    EXPECT_LT(roughness(smooth), 0.75 * roughness(stepped)) << grid;
+  }
+}
+
+TEST(Convex, CrossingsLieOnEdgesThatTheSurfaceCuts) {
+  const ViewSet views = random_bodies(3);
+  const VoxelGrid solid = hull(views, 72);
+  const Refinement result = refine_convex(solid, views);
+  const Vec3i& n = solid.size();
+  int found = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    for (int z = axis == 2; z < n.z(); ++z)
+      for (int y = axis == 1; y < n.y(); ++y)
+        for (int x = axis == 0; x < n.x(); ++x) {
+          const float at = result.crossings[axis](x, y, z);
+          if (at == 0) continue;
+          ++found;
+          const Vec3i low = Vec3i(x, y, z) - Vec3i::Unit(axis);
+          EXPECT_EQ(result.grid(x, y, z), at < 0);
+          EXPECT_EQ(result.grid(low.x(), low.y(), low.z()), at > 0);
+          EXPECT_TRUE(solid(x, y, z) && solid(low.x(), low.y(), low.z()));
+          EXPECT_LT(std::abs(at), 1);
+        }
+  EXPECT_GT(found, 100);
 }
 
 TEST(Convex, ThreeEllipsesMakeAnEllipsoid) {
   for (const Vec3& size : {Vec3(1, 0.7, 0.5), Vec3(0.4, 1, 0.6), Vec3(0.5, 0.5, 1)}) {
     const Shape shape = superellipsoid(size, 2);
     const ViewSet views = aligned(shape, kThreeViews, {.pixels = 512});
-    EXPECT_NEAR(refine_convex(hull(views, 128), views).volume() / shape.volume, 1, 0.015) << size.transpose();
+    EXPECT_NEAR(refined(hull(views, 128), views).volume() / shape.volume, 1, 0.015) << size.transpose();
   }
 }
 
@@ -131,7 +179,7 @@ TEST(Convex, SquarerOutlinesMakeSquarerSolids) {
     const ViewSet views = aligned(shape, kThreeViews, {.pixels = 512});
     const VoxelGrid solid = hull(views, 64);
     const double before = std::abs(solid.volume() - shape.volume);
-    EXPECT_LT(std::abs(refine_convex(solid, views).volume() - shape.volume), before) << exponent;
+    EXPECT_LT(std::abs(refined(solid, views).volume() - shape.volume), before) << exponent;
   }
 }
 
@@ -143,7 +191,7 @@ TEST(Convex, StraightThingsStayAsTheyAre) {
     for (const int grid : {32, 100, 128}) {
       const ViewSet views = aligned(shape, kThreeViews, {.pixels = 300});
       const VoxelGrid solid = hull(views, grid);
-      EXPECT_EQ(refine_convex(solid, views), solid) << shape.name << " " << grid;
+      EXPECT_EQ(refined(solid, views), solid) << shape.name << " " << grid;
     }
 }
 
@@ -155,12 +203,12 @@ TEST(Convex, AStraightTaperStaysAsItIs) {
   };
   const ViewSet views = aligned(pyramid, kThreeViews, {.pixels = 512});
   const VoxelGrid solid = hull(views, 128);
-  EXPECT_EQ(refine_convex(solid, views), solid);
+  EXPECT_EQ(refined(solid, views), solid);
 }
 
 TEST(Convex, RefusesOptionsOutOfRange) {
   const ViewSet views = aligned(box());
-  EXPECT_THROW(refine_convex(hull(views, 16), views, {.evidence = 2}), std::invalid_argument);
+  EXPECT_THROW(refined(hull(views, 16), views, {.evidence = 2}), std::invalid_argument);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <limits>
 #include <mutex>
 
+#include "carve/carving/part_contours.h"
 #include "carve/carving/sections.h"
 #include "carve/core/options.h"
 #include "carve/core/parallel.h"
@@ -14,89 +15,10 @@
 namespace carve {
 namespace {
 
-constexpr int kRectangle = 0;          // instead of an exponent
-constexpr int kSteepestExponent = 40;  // from here on a superellipse is a rectangle
-constexpr int kFewestSlices = 12;      // of a part: fewer do not tell a curve from a line
-constexpr double kFilled = 0.95;       // share of its contour that a section fills, if its box is what bounds it
-constexpr double kConvex = 0.97;       // share of its convex hull that a convex section fills, for its voxels' corners
-constexpr float kSlope = 0.4f;         // voxels a slice: an outline that certainly is not upright
-constexpr float kTolerance = 1e-4f;    // a mirrored solid gives the mirrored result
-
-/// How steeply an end moves over the next or the last `steps` slices, in voxels a slice; 0 past a jump or the part's
-/// end.
-float slope(const Sections& all, int section, int end, int Section::*next, int steps) {
-  int other = section;
-  for (int i = 0; i < steps && other >= 0; ++i) other = all.sections[other].*next;
-  if (other < 0) return 0;
-  const float rise = std::abs(all.sections[other].ends[end] - all.sections[section].ends[end]) / steps;
-  return rise <= Sections::kJump ? rise : 0;
-}
-
-/// The share of a part's corners that lie between two ends which both move, so that a box's edge is none there.
-float sloping_corners(const Sections& all, const std::vector<int>& part, int steps) {
-  float corners = 0;
-  for (const int s : part) {
-    std::array<float, 4> side;
-    for (int end = 0; end < 4; ++end)
-      side[end] = std::max(slope(all, s, end, &Section::above, steps), slope(all, s, end, &Section::below, steps));
-    for (const int u : {0, 1})
-      for (const int v : {2, 3}) corners += std::min(1.f, std::min(side[u], side[v]) / kSlope) / 4;
-  }
-  return corners / part.size();
-}
-
-/// Root mean square distance of an end from its best straight line, in voxels.
-double bend(const Sections& all, const std::vector<int>& part, int end) {
-  const double n = static_cast<double>(part.size());
-  double mean = 0, rise = 0, squares = 0;
-  for (const int s : part) mean += all.sections[s].ends[end] / n;
-  for (std::size_t i = 0; i < part.size(); ++i)
-    rise += (i - (n - 1) / 2) * (all.sections[part[i]].ends[end] - mean) * 12 / (n * (n * n - 1));
-  for (std::size_t i = 0; i < part.size(); ++i) {
-    const double off = all.sections[part[i]].ends[end] - mean - rise * (i - (n - 1) / 2);
-    squares += off * off / n;
-  }
-  return std::sqrt(squares);
-}
-
-/// The share of its box that a superellipse fills.
-double superellipse_fill(double exponent) {
-  return std::exp(2 * std::lgamma(1 + 1 / exponent) - std::lgamma(1 + 2 / exponent));
-}
-
-/// The exponent of the sections of a part whose outlines fill a share of their boxes. Outlines are cut off where the
-/// part ends, so that they fill more than the contour they were cut from: an ellipse is meant up to kCutEllipse.
-int contour_exponent(double outline_fill) {
-  constexpr double kCutEllipse = 0.83, kCutRectangle = 1.02;
-  const double ellipse = superellipse_fill(2);
-  const double fill = ellipse + (outline_fill - kCutEllipse) * (1 - ellipse) / (kCutRectangle - kCutEllipse);
-  int exponent = 2;
-  while (exponent < kSteepestExponent && superellipse_fill(exponent + 0.5) <= fill) ++exponent;
-  return exponent < kSteepestExponent ? exponent : kRectangle;
-}
-
-/// Each part's exponent.
-std::vector<int> contours(const Sections& all, int longest, const ConvexOptions& options) {
-  std::vector<int> exponents(all.parts.size(), kRectangle);
-  const int steps = std::max(2, (longest + 16) / 32);
-  parallel_ranges(0, static_cast<int>(all.parts.size()), 16, [&](int first, int last) {
-    for (int p = first; p < last; ++p) {
-      const std::vector<int>& part = all.parts[p];
-      if (static_cast<int>(part.size()) < kFewestSlices || sloping_corners(all, part, steps) < options.evidence)
-        continue;
-      const auto bent = [&](int end) { return std::max(bend(all, part, end), bend(all, part, end + 1)); };
-      if (std::min(bent(0), bent(2)) < options.bend / 100 * longest) continue;
-      float widest = 0, highest = 0, width = 0, height = 0;
-      for (const int s : part) {
-        const Section& section = all.sections[s];
-        widest = std::max(widest, section.width()), highest = std::max(highest, section.height());
-        width += section.width() / part.size(), height += section.height() / part.size();
-      }
-      exponents[p] = contour_exponent(std::max(width / widest, height / highest));
-    }
-  });
-  return exponents;
-}
+constexpr double kFilled = 0.95;     // share of its contour that a section fills, if its box is what bounds it
+constexpr double kConvex = 0.97;     // share of its convex hull that a convex section fills, for its voxels' corners
+constexpr float kTolerance = 1e-4f;  // a mirrored solid gives the mirrored result
+constexpr float kClearance = 0.02f;  // voxels between a crossing and the centres
 
 float power(float base, int exponent) {
   float result = 1;
@@ -152,7 +74,7 @@ class ContourField {
   ContourField(const VoxelGrid& solid, const ViewSet& views, const ConvexOptions& options) : size_(solid.size()) {
     for (int axis = 0; axis < 3; ++axis) {
       cuts_[axis] = cut(solid, axis, views);
-      const std::vector<int> exponents = contours(cuts_[axis], size_.maxCoeff(), options);
+      const std::vector<int> exponents = part_exponents(cuts_[axis], size_.maxCoeff(), options);
       for (const Section& s : cuts_[axis].sections) exponents_[axis].push_back(exponents[s.part]);
       keep_unfilled(axis);
       rounds_[axis] = std::ranges::any_of(exponents_[axis], [](int e) { return e != kRectangle; });
@@ -275,27 +197,118 @@ class RayMinima {
   std::vector<float> xy_, zy_, xz_;
 };
 
-}  // namespace
-
-VoxelGrid refine_convex(const VoxelGrid& solid, const ViewSet& views, const ConvexOptions& options) {
-  check("convex", options);
-  if (!options.arm) return solid;
-  const ContourField field(solid, views, options);
-  if (!field.rounds()) return solid;
-  RayMinima minima(solid.size());
-  minima.find(solid, field);
+/// The solid's voxels that do not lie outside their contours.
+VoxelGrid rounded(const VoxelGrid& solid, const ContourField& field, const RayMinima& minima) {
   VoxelGrid result = solid;
   parallel_ranges(0, solid.size().z(), 4, [&](int first, int last) {
     std::vector<float> values;
     for (int z = first; z < last; ++z) {
       field.layer(z, values);
       RayMinima::each_voxel(solid, z, [&](int x, int y, std::size_t pixel) {
-        if (values[pixel] > 1 + kTolerance && values[pixel] > minima.level(x, y, z) + kTolerance)
-          result.set(x, y, z, false);
+        if (values[pixel] > minima.level(x, y, z) + kTolerance) result.set(x, y, z, false);
       });
     }
   });
   return result;
+}
+
+/// From a voxel that stays to one that does not, where the field passes the level; 0 where it does not say.
+float crossing(float inside, float outside, float level) {
+  if (inside == 0 || outside <= level) return 0;
+  const float from = std::sqrt(inside), share = (std::sqrt(level) - from) / (std::sqrt(outside) - from);
+  return std::clamp(share, kClearance, 1 - kClearance);
+}
+
+/// The edges between voxels that stay and voxels of the solid that do not.
+class CutEdges {
+ public:
+  CutEdges(const VoxelGrid& solid, const VoxelGrid& result, const ContourField& field, const RayMinima& minima)
+      : solid_(solid), result_(result), minima_(minima), rows_(solid.size().z()) {
+    parallel_ranges(0, solid.size().z(), 8, [&](int first, int last) {
+      std::vector<float> values, before;
+      if (first > 0) field.layer(first - 1, before);
+      for (int z = first; z < last; ++z) {
+        field.layer(z, values);
+        for (int y = 0; y < solid.size().y(); ++y) find(y, z, values, before);
+        values.swap(before);
+      }
+    });
+  }
+
+  AxisCrossings collect() const {
+    AxisCrossings result;
+    for (int axis = 0; axis < 3; ++axis) {
+      EdgeCrossings& all = result[axis];
+      all.size = solid_.size();
+      all.first = {0};
+      for (const auto& layer : rows_) {
+        const std::uint32_t begin = static_cast<std::uint32_t>(all.entries.size());
+        for (const std::uint32_t end : layer[axis].ends) all.first.push_back(begin + end);
+        all.entries.insert(all.entries.end(), layer[axis].entries.begin(), layer[axis].entries.end());
+      }
+    }
+    return result;
+  }
+
+ private:
+  struct Layer {
+    std::vector<std::uint32_t> ends;  // of the rows
+    std::vector<EdgeCrossings::Entry> entries;
+  };
+
+  void find(int y, int z, const std::vector<float>& values, const std::vector<float>& before) {
+    const int nx = solid_.size().x();
+    const float* row = &values[static_cast<std::size_t>(y) * nx];
+    for (int axis = 0; axis < 3; ++axis) {
+      Layer& layer = rows_[z][axis];
+      const Vec3i down = Vec3i::Unit(axis);
+      if (axis == 0 || (axis == 1 ? y : z) > 0) {
+        const float* lower = axis == 0 ? row - 1 : axis == 1 ? row - nx : &before[static_cast<std::size_t>(y) * nx];
+        each_cut(y, z, axis, [&](int x) {
+          const bool inside = result_(x, y, z);  // the upper one
+          const Vec3i in = inside ? Vec3i(x, y, z) : Vec3i(Vec3i(x, y, z) - down);
+          const float level = minima_.level(in.x(), in.y(), in.z());
+          const float share = inside ? crossing(row[x], lower[x], level) : crossing(lower[x], row[x], level);
+          if (share > 0) layer.entries.push_back({x, inside ? -share : share});
+        });
+      }
+      layer.ends.push_back(static_cast<std::uint32_t>(layer.entries.size()));
+    }
+  }
+
+  /// Calls use(x) for the edges that end in row (y, z), lie in the solid and are cut by the result's surface.
+  template <class Use>
+  void each_cut(int y, int z, int axis, Use&& use) const {
+    const int dy = axis == 1, dz = axis == 2;
+    const std::uint64_t *kept = result_.row(y, z), *below = result_.row(y - dy, z - dz);
+    const std::uint64_t *solid = solid_.row(y, z), *under = solid_.row(y - dy, z - dz);
+    for (int w = 0; w < solid_.words_per_row(); ++w) {
+      std::uint64_t cut = kept[w] ^ below[w], both = solid[w] & under[w];
+      if (axis == 0) {
+        cut = kept[w] ^ (kept[w] << 1 | (w > 0 ? kept[w - 1] >> 63 : 0));
+        both = solid[w] & (solid[w] << 1 | (w > 0 ? solid[w - 1] >> 63 : 0));
+      }
+      for (std::uint64_t rest = cut & both; rest; rest &= rest - 1) use(64 * w + std::countr_zero(rest));
+    }
+  }
+
+  const VoxelGrid &solid_, &result_;
+  const RayMinima& minima_;
+  std::vector<std::array<Layer, 3>> rows_;  // by z
+};
+
+}  // namespace
+
+Refinement refine_convex(const VoxelGrid& solid, const ViewSet& views, const ConvexOptions& options) {
+  check("convex", options);
+  if (!options.arm) return {solid, {}};
+  const ContourField field(solid, views, options);
+  if (!field.rounds()) return {solid, {}};
+  RayMinima minima(solid.size());
+  minima.find(solid, field);
+  VoxelGrid result = rounded(solid, field, minima);
+  AxisCrossings crossings = CutEdges(solid, result, field, minima).collect();
+  return {std::move(result), std::move(crossings)};
 }
 
 }  // namespace carve

@@ -1,4 +1,5 @@
 #pragma once
+#include "carve/grid/edge_crossings.h"
 #include "carve/grid/voxel_grid.h"
 #include "carve/views/view_set.h"
 
@@ -17,6 +18,11 @@ void visit_fields(ConvexOptions& o, Visitor&& field) {
   field("bend", o.bend, 0.05, 100.0, "least curvature of its outlines: rms distance from lines, % of the longest side");
 }
 
+struct Refinement {
+  VoxelGrid grid;
+  AxisCrossings crossings;  // of the rounded surface, which no drawing shows
+};
+
 /// Convex silhouette refinement (thesis 3.1.3, Algorithm 3.5) \cite silva_2018, generalised from slices of the whole
 /// object to its parts (carving/sections.h): a section's box, which two drawings give, is filled by a scaled contour
 /// instead of a rectangle, so that three circles make a sphere and not three crossed cylinders.
@@ -30,6 +36,6 @@ void visit_fields(ConvexOptions& o, Visitor&& field) {
 ///
 /// Arm off: `solid` itself. \param views  drawings that `solid` was carved from \throws std::invalid_argument on an
 /// option out of range
-VoxelGrid refine_convex(const VoxelGrid& solid, const ViewSet& views, const ConvexOptions& options = {});
+Refinement refine_convex(const VoxelGrid& solid, const ViewSet& views, const ConvexOptions& options = {});
 
 }  // namespace carve

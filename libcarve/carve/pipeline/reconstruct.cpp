@@ -68,11 +68,15 @@ Reconstruction reconstruct(std::map<View, Drawing> drawings, const PipelineOptio
   const Carving hull = stage("carve", [&] { return carve_silhouettes(result.views, options.carve); });
   result.consistency =
       stage("consistency", [&] { return apply_consistency(hull, result.views, options.consistency, monitor); });
-  result.grid = stage("convex", [&] {
+  Refinement refined = stage("convex", [&] {
     return refine_convex(std::exchange(result.consistency.grid, {}), result.views, options.convex);
   });
+  result.grid = std::move(refined.grid);
   const Crossings crossings = stage("intersections", [&] {
-    return options.intersections ? contour_crossings(result.views, result.grid) : Crossings{};
+    if (!options.intersections) return Crossings{};
+    Crossings crossings = contour_crossings(result.views, result.grid);
+    crossings.edges = std::move(refined.crossings);
+    return crossings;
   });
   Mesh surface = stage("surface", [&] { return marching_cubes(result.grid, crossings); });
   result.mesh = stage("smooth", [&] { return smooth(std::move(surface), options.smooth, monitor); });

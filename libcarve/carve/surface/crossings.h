@@ -1,5 +1,6 @@
 #pragma once
 #include "carve/core/raster.h"
+#include "carve/grid/edge_crossings.h"
 #include "carve/grid/voxel_grid.h"
 #include "carve/views/view_set.h"
 
@@ -17,6 +18,7 @@ struct PlaneCrossings {
 /// One plane for front and back (xy), top and bottom (xz), side and left (yz). Empty planes see no outline.
 struct Crossings {
   PlaneCrossings xy, xz, yz;
+  AxisCrossings edges = {};  // of surfaces that no outline shows; the nearer of the two is taken
 };
 
 /// Marching intersections (thesis 3.1.4) \cite rocchini_2001: the exact crossing of each grid line with the drawn
