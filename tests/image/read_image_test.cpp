@@ -374,6 +374,18 @@ TEST(ReadImage, DamagedBytesNeverCrashNorPrint) {
   EXPECT_GT(read, 0);
 }
 
+TEST(ReadImage, AnAlphaWithoutItsChannelIsNoneToRead) {
+  std::string bytes = tiff_file(random_samples(37, 21, 2, 8, 1), {.alpha = TiffLook::Alpha::straight, .tiled = true});
+  const std::string samples_per_pixel("\x15\x01\x03\0\x01\0\0\0\x02", 9);
+  const std::size_t tag = bytes.find(samples_per_pixel);
+  ASSERT_NE(tag, std::string::npos);
+  bytes[tag + 8] = 1;
+  try {
+    EXPECT_EQ(decoded(bytes).width, 37);
+  } catch (const IoError&) {
+  }
+}
+
 std::string big_endian(std::uint32_t value) {
   std::string bytes;
   for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift);

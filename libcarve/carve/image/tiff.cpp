@@ -107,7 +107,7 @@ void put_grey(TIFFRGBAImage* image, std::uint32_t* to, std::uint32_t, std::uint3
   for (; height > 0; --height) {
     for (std::uint32_t x = 0; x < width; ++x, from += pixel) {
       const std::uint32_t grey = image->photometric == PHOTOMETRIC_MINISWHITE ? 255 - sample(0) : sample(0);
-      const std::uint32_t alpha = image->alpha ? sample(1) : 255;
+      const std::uint32_t alpha = image->alpha && image->samplesperpixel > 1 ? sample(1) : 255;
       *to++ = grey | grey << 8 | grey << 16 | alpha << 24;
     }
     to += skip_to;
