@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "carve/core/parallel.h"
 #include "carve/mesh/topology.h"
 #include "mesh/solids.h"
@@ -115,6 +118,22 @@ TEST(Smooth, AConvexSolidShrinksAtEveryStep) {
   }
 }
 
+TEST_P(SmoothTest, TaubinKeepsTheVolumeAndEvensOut) {
+  const auto roughness = [](const Mesh& mesh) {
+    double squares = 0;
+    const double radius = std::cbrt(topology(mesh).volume * 3 / 4 / std::numbers::pi);
+    for (const Vec3& p : mesh.positions) squares += std::pow(p.norm() - radius, 2);
+    return std::sqrt(squares / mesh.positions.size());
+  };
+  const Mesh mesh = shaken(ball_mesh(4), GetParam(), 0.01);
+  const SmoothOptions options{.steps = 10, .method = Smoothing::taubin};
+  const Mesh taubin = smooth(mesh, options), laplacian = smooth(mesh, {.steps = 10});
+  const double volume = topology(mesh).volume;
+  EXPECT_NEAR(topology(taubin).volume / volume, 1, 0.01);
+  EXPECT_LT(topology(laplacian).volume / volume, 0.99);
+  EXPECT_LT(roughness(taubin), 0.6 * roughness(mesh));
+}
+
 bool on_edge(const Vec3& p) {
   int ends = 0;
   for (const double x : p) ends += x == 0 || x == 1;
@@ -130,6 +149,11 @@ TEST(Smooth, EdgesSharperThanTheLevelStay) {
     }
   }
   EXPECT_DOUBLE_EQ(topology(moved).volume, 1);
+}
+
+TEST(Smooth, TaubinKeepsEdgesSharperThanTheLevel) {
+  const Mesh box = grid_box(6);
+  EXPECT_DOUBLE_EQ(topology(smooth(box, {.steps = 5, .level = 89, .method = Smoothing::taubin})).volume, 1);
 }
 
 TEST(Smooth, EdgesAsSharpAsTheLevelAreSmoothed) {

@@ -15,6 +15,7 @@ namespace carve {
 namespace {
 
 constexpr int kGrain = 1 << 12;
+constexpr double kInwards = 0.5, kOutwards = 1 / (0.1 - 1 / kInwards);  // 1 / inwards + 1 / outwards = 0.1
 
 // The one-ring of each vertex: its neighbours, once each.
 struct Rings {
@@ -104,8 +105,7 @@ Mesh smooth(Mesh mesh, const SmoothOptions& options, const Monitor& monitor) {
                                                               : std::vector<std::uint8_t>(mesh.positions.size());
   const Rings rings = one_rings(mesh, around);
   std::vector<Vec3> moved(mesh.positions.size());
-  for (int step = 0; step < options.steps; ++step) {
-    monitor.at("smooth", static_cast<double>(step) / options.steps);
+  const auto move = [&](double share) {
     parallel_ranges(0, static_cast<int>(moved.size()), kGrain, [&](int first, int last) {
       for (int v = first; v < last; ++v) {
         const Vec3& position = mesh.positions[v];
@@ -113,10 +113,19 @@ Mesh smooth(Mesh mesh, const SmoothOptions& options, const Monitor& monitor) {
         // Summing differences, as Equation 3.7 does, keeps planes exactly plane.
         Vec3 sum = Vec3::Zero();
         for (std::uint32_t i = begin; i < end; ++i) sum += mesh.positions[rings.neighbours[i]] - position;
-        moved[v] = end > begin ? Vec3(position + sum / (end - begin)) : position;
+        moved[v] = end > begin ? Vec3(position + share * (sum / (end - begin))) : position;
       }
     });
     mesh.positions.swap(moved);
+  };
+  for (int step = 0; step < options.steps; ++step) {
+    monitor.at("smooth", static_cast<double>(step) / options.steps);
+    if (options.method == Smoothing::laplacian) {
+      move(1);
+    } else {
+      move(kInwards);
+      move(kOutwards);
+    }
   }
   monitor.at("smooth", 1);
   return mesh;
