@@ -10,6 +10,7 @@
 #include "report/plot.h"
 #include "report/table.h"
 #include "run/cell.h"
+#include "run/heat_maps.h"
 #include "run/provenance.h"
 #include "run/runner.h"
 
@@ -149,6 +150,16 @@ int plot_command(const Arguments& arguments) {
   return kDone;
 }
 
+int heat_maps_command(const Arguments& arguments) {
+  for (const std::string& name : specs_with_results(arguments)) {
+    std::vector<std::string> complaints;
+    const fs::path folder = arguments.results / name;
+    for (const fs::path& picture : draw_heat_maps_of(folder, load_overview(folder), load_records(folder, complaints)))
+      std::cout << picture.string() << '\n';
+  }
+  return kDone;
+}
+
 int compare_command(const Arguments& arguments) {
   bool any = false;
   for (const std::string& name : specs_in(arguments.results)) {
@@ -206,6 +217,7 @@ int main(int argc, char** argv) {
   add("table", "write and print tables (Markdown, CSV, LaTeX) from results", table_command, false);
 
   add("plot", "draw figures from results (gnuplot)", plot_command, false);
+  add("heatmaps", "draw the methods' distances to the reference side by side", heat_maps_command, false);
   CLI::App* both = app.add_subcommand("compare", "two folders of results side by side, paired by run");
   both->add_option("a", arguments.results, "results")->required()->type_name("RESULTS_A");
   both->add_option("b", arguments.other, "other results")->required()->type_name("RESULTS_B");

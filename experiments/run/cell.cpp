@@ -10,11 +10,11 @@
 #include "carve/mesh/mesh_io.h"
 #include "eval/metrics.h"
 #include "models/inside.h"
-#include "models/outer_surface.h"
 #include "run/hash.h"
 #include "run/methods.h"
 #include "run/models.h"
 #include "run/provenance.h"
+#include "run/reference.h"
 #include "run/runner.h"
 
 namespace carve::experiments {
@@ -25,16 +25,6 @@ constexpr int kOccupancyGrid = 128;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-// The outer surface is made once a model; whichever run comes first leaves it for the others, whole.
-Mesh reference_of(const fs::path& results, const Model& model, const std::string& content) {
-  const fs::path file = results / "references" / (content + ".ply");
-  if (fs::exists(file)) return read_mesh(file);
-  Mesh outer = outer_surface(model);
-  fs::create_directories(file.parent_path());
-  write_mesh(file, outer, {.strict = false});
-  return outer;
 }
 
 void measure_against(const Model& model, const Mesh& reference, const Mesh& mesh, const CompareOptions& options,
@@ -86,14 +76,17 @@ void run_cell(const fs::path& results, const std::string& spec, const Cell& cell
   record.metrics["seconds"] = seconds_since(start);
   record_times(output.times, record);
 
-  if (subject.model)
-    measure_against(*subject.model, reference_of(results, *subject.model, content_hash(subject)), output.mesh,
-                    input.options.evaluate, record);
+  record.provenance = provenance();
+  if (subject.model) {
+    const std::string content = content_hash(subject);
+    record.provenance[kReferenceKey] = content;
+    measure_against(*subject.model, reference_of(results, *subject.model, content), output.mesh, input.options.evaluate,
+                    record);
+  }
   measure_shadows(output.mesh, input, record);
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   record.metrics["megabytes"] = static_cast<double>(usage.ru_maxrss) / 1024;
-  record.provenance = provenance();
 
   const fs::path folder = results / cell.path;
   fs::create_directories(folder);

@@ -53,6 +53,7 @@ std::vector<RunMetric> all_metrics() {
       {"seconds", "wall time from pictures to mesh, one thread", "s", Direction::lower},
       {"seconds_read", "understanding the drawings", "s", Direction::lower},
       {"seconds_carve", "alignment and silhouette carving", "s", Direction::lower},
+      {"seconds_consistency", "geometric consistency", "s", Direction::lower},
       {"seconds_surface", "intersections, marching cubes", "s", Direction::lower},
       {"seconds_smooth", "smoothing", "s", Direction::lower},
       {"megabytes", "largest resident memory of the run's process, synthesis and evaluation included", "MB",
