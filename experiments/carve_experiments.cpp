@@ -7,6 +7,7 @@
 #include "carve/core/error.h"
 #include "carve/core/file.h"
 #include "report/compare.h"
+#include "report/page.h"
 #include "report/plot.h"
 #include "report/table.h"
 #include "run/cell.h"
@@ -160,6 +161,16 @@ int heat_maps_command(const Arguments& arguments) {
   return kDone;
 }
 
+int report_command(const Arguments& arguments) {
+  const auto write = [&](const char* name, const std::string& text) {
+    write_file(arguments.results / name, [&](std::ostream& out) { out << text; });
+    std::cout << (arguments.results / name).string() << '\n';
+  };
+  write("report.md", markdown_report(arguments.results));
+  write("report.html", html_report(arguments.results));
+  return kDone;
+}
+
 int compare_command(const Arguments& arguments) {
   bool any = false;
   for (const std::string& name : specs_in(arguments.results)) {
@@ -218,6 +229,7 @@ int main(int argc, char** argv) {
 
   add("plot", "draw figures from results (gnuplot)", plot_command, false);
   add("heatmaps", "draw the methods' distances to the reference side by side", heat_maps_command, false);
+  add("report", "write report.html and report.md from all results", report_command, false);
   CLI::App* both = app.add_subcommand("compare", "two folders of results side by side, paired by run");
   both->add_option("a", arguments.results, "results")->required()->type_name("RESULTS_A");
   both->add_option("b", arguments.other, "other results")->required()->type_name("RESULTS_B");

@@ -152,6 +152,26 @@ std::string joined(const std::vector<std::string>& parts, const std::string& bet
   return all;
 }
 
+// Differences from the baseline, and why entries are missing.
+std::vector<std::string> notes_of(const Table& table) {
+  std::vector<std::string> notes;
+  for (std::size_t c = 0; c < table.columns.size(); ++c)
+    if (const auto& d = table.summaries[c].to_baseline)
+      notes.push_back(table.columns[c] + " − " + table.baseline + ": " + difference_text(*d, table.metric.better));
+  std::set<std::string> reasons;
+  for (const Table::Row& row : table.rows)
+    for (std::size_t c = 0; c < row.entries.size(); ++c)
+      if (!row.entries[c].value && reasons.insert(table.columns[c] + row.entries[c].why).second)
+        notes.push_back("–: " + table.columns[c] + " on " + row.label + ": " + row.entries[c].why);
+  return notes;
+}
+
+std::string html_text(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
+  return out;
+}
+
 std::string legend(const RunMetric& metric) {
   const char* better = metric.better == Direction::lower    ? "lower is better"
                        : metric.better == Direction::higher ? "higher is better"
@@ -197,15 +217,27 @@ std::string to_markdown(const Table& table) {
       table, [](const std::string& t) { return t; }, [](const std::string& t) { return "**" + t + "**"; });
   for (const auto& row : rows) out << "| " << joined(row, " | ") << " |\n";
   out << "\n";
-  for (std::size_t c = 0; c < table.columns.size(); ++c)
-    if (const auto& d = table.summaries[c].to_baseline)
-      out << "- " << table.columns[c] << " − " << table.baseline << ": " << difference_text(*d, table.metric.better)
-          << "\n";
-  std::set<std::string> reasons;
-  for (const Table::Row& row : table.rows)
-    for (std::size_t c = 0; c < row.entries.size(); ++c)
-      if (!row.entries[c].value && reasons.insert(table.columns[c] + row.entries[c].why).second)
-        out << "- –: " << table.columns[c] << " on " << row.label << ": " << row.entries[c].why << "\n";
+  for (const std::string& note : notes_of(table)) out << "- " << note << "\n";
+  return out.str();
+}
+
+std::string to_html(const Table& table) {
+  std::ostringstream out;
+  out << "<h3>" << html_text(table.metric.name) << "</h3><p class=\"note\">" << html_text(legend(table.metric))
+      << "</p><div class=\"wide\"><table><tr><th></th>";
+  for (const std::string& column : table.columns) out << "<th>" << html_text(column) << "</th>";
+  out << "</tr>\n";
+  constexpr char kBest = '\1';  // cannot stand in a name
+  const auto rows = text_rows(table, html_text, [](const std::string& t) { return kBest + t; });
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    out << (i == table.rows.size() ? "<tr class=\"summary\">" : "<tr>");
+    for (const std::string& text : rows[i])
+      out << (text.starts_with(kBest) ? "<td class=\"best\">" + text.substr(1) : "<td>" + text) << "</td>";
+    out << "</tr>\n";
+  }
+  out << "</table></div><ul class=\"note\">";
+  for (const std::string& note : notes_of(table)) out << "<li>" << html_text(note) << "</li>";
+  out << "</ul>\n";
   return out.str();
 }
 

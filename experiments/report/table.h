@@ -35,6 +35,7 @@ Table make_table(const Overview& overview, const std::vector<Record>& records, c
 /// Best entry of a row in bold, missing ones as a dash with the reason below the table, the metric's definition above
 /// it.
 std::string to_markdown(const Table& table);
+std::string to_html(const Table& table);  // the same, for html_report
 std::string to_csv(const Table& table);
 std::string to_latex(const Table& table);  // booktabs
 
