@@ -54,6 +54,7 @@ std::vector<RunMetric> all_metrics() {
       {"seconds_read", "understanding the drawings", "s", Direction::lower},
       {"seconds_carve", "alignment and silhouette carving", "s", Direction::lower},
       {"seconds_consistency", "geometric consistency", "s", Direction::lower},
+      {"seconds_convex", "convex refinement", "s", Direction::lower},
       {"seconds_surface", "intersections, marching cubes", "s", Direction::lower},
       {"seconds_smooth", "smoothing", "s", Direction::lower},
       {"megabytes", "largest resident memory of the run's process, synthesis and evaluation included", "MB",
