@@ -14,8 +14,8 @@ struct CellWeights {
   double open = 0.5;       // an open stroke without a depth jump
   double area = 0.003;     // a voxel face of surface
   double volume = 0.0001;  // a dropped voxel
-  double buried = 0.001;   // a dropped voxel, times the views that it lacks to be seen empty in two
-  double silhouette = 50;  // a pixel whose ray meets no voxel any more
+  double buried = 0.0025;  // a dropped voxel, times the views that it lacks to be seen empty in two
+  double silhouette = 8;   // a pixel whose ray meets no voxel any more
 };
 
 template <class Visitor>

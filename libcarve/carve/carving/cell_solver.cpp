@@ -77,13 +77,13 @@ class Search {
 
   /// The cell and all that hide it in two views, as far as they are kept: dropping them, it is seen empty in both. The
   /// other way round, the cell and all that it hides there, as far as they are dropped.
-  void open_or_fill(int cell, int v, int w, bool drop, std::vector<int>& move) {
-    constexpr std::size_t kMost = 256;
+  bool open_or_fill(int cell, int v, int w, bool drop, std::size_t most, std::vector<int>& move) {
     move.clear();
     ++stamp_;
     queue_.assign(1, cell);
     mark_[cell] = stamp_;
-    for (std::size_t k = 0; k < queue_.size() && move.size() < kMost; ++k) {
+    for (std::size_t k = 0; k < queue_.size(); ++k) {
+      if (move.size() > most || k > 8 * most) return false;
       const int c = queue_[k];
       if (problem_.keep()[c] == drop) move.push_back(c);
       for (const int view : {v, w})
@@ -93,6 +93,7 @@ class Search {
             queue_.push_back(n);
           }
     }
+    return true;
   }
 
   void try_move(const std::vector<int>& move) {
@@ -106,12 +107,12 @@ class Search {
     for (std::int64_t before = problem_.energy() + 1; problem_.energy() < before && !out_of_nodes();) {
       before = problem_.energy();
       std::vector<int> move;
+      const std::size_t most = std::max<std::size_t>(4, limit_ / 12 / std::max(1, problem_.cells()));
       for (int c = 0; c < problem_.cells(); ++c)
         for (int v = 0; v < views_; ++v)
           for (int w = 0; w < v; ++w) {
             if (out_of_nodes()) return;
-            open_or_fill(c, v, w, problem_.keep()[c], move);
-            try_move(move);
+            if (open_or_fill(c, v, w, problem_.keep()[c], most, move)) try_move(move);
           }
       for (const std::vector<int>& column : order_.columns) {
         if (out_of_nodes()) return;
@@ -192,7 +193,7 @@ class Search {
     move.assign(1, cell);
     if (kind == 2 && views_ > 1) {
       const int v = static_cast<int>(random_.below(views_)), w = static_cast<int>(random_.below(views_ - 1));
-      open_or_fill(cell, v, w < v ? w : w + 1, problem_.keep()[cell], move);
+      if (!open_or_fill(cell, v, w < v ? w : w + 1, problem_.keep()[cell], 16, move)) move.assign(1, cell);
     } else if (kind == 3 && !order_.columns.empty()) {
       const std::vector<int>& column = order_.columns[random_.below(order_.columns.size())];
       const std::size_t level = random_.below(column.size() + 1);

@@ -30,8 +30,9 @@ Carved as_printed(const Input& in) { return {carve_as_printed(in.hull)}; }
 /// Decides cells with `decide` and puts them together.
 template <class Decide>
 Carved by_cells(const Input& in, Decide&& decide) {
+  const Vec3i& size = in.hull.grid.size();
   const Cells cells = partition(in.hull.grid, in.regions);
-  CellProblem problem(cells, in.hull.grid.size(), in.regions, in.options.weights);
+  CellProblem problem(cells, size, in.regions, in.options.weights);
   const std::int64_t nodes = decide(problem, cells);
   return {assemble(in.hull.grid, cells, problem.keep()), cells.count, nodes};
 }

@@ -25,7 +25,7 @@ struct ConsistencyOptions {
   Consistency arm = Consistency::solver;
   RegionOptions regions = {};
   CellWeights weights = {};
-  int nodes = 60000;
+  int nodes = 80000;
   bool self_check = true;
 };
 template <class Visitor>
