@@ -23,8 +23,6 @@ struct Carved {
   std::int64_t nodes = 0;
 };
 
-Carved keep_hull(const Input& in) { return {in.hull.grid}; }
-
 Carved as_printed(const Input& in) { return {carve_as_printed(in.hull)}; }
 
 /// Decides cells with `decide` and puts them together.
@@ -48,7 +46,8 @@ Carved solver(const Input& in) {
 }
 
 using Arm = Carved (*)(const Input&);
-constexpr Arm kArms[] = {keep_hull, as_printed, two_level, solver};  // in the order of Consistency
+constexpr Arm kArms[] = {nullptr, as_printed, two_level,
+                         solver};  // in the order of Consistency; none has nothing to do
 
 }  // namespace
 
@@ -56,6 +55,7 @@ ConsistencyResult apply_consistency(const Carving& hull, const ViewSet& views, c
                                     const Monitor& monitor) {
   check("consistency", options);
   monitor.at("consistency", 0);
+  if (options.arm == Consistency::none) return {.grid = hull.grid};
   std::vector<RegionMap> regions(views.views.size());
   std::vector<View> names;
   for (const AlignedView& view : views.views) names.push_back(view.view);

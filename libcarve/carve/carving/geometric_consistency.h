@@ -38,11 +38,11 @@ void visit_fields(ConsistencyOptions& o, Visitor&& field) {
 }
 
 struct ConsistencyResult {
-  VoxelGrid grid;
+  VoxelGrid grid = {};
   Consistency ran = Consistency::none;  // none: nothing explained the drawings better than the hull
   int regions = 0, cells = 0;
   std::int64_t nodes = 0;
-  StrokeScore hull_score, score;
+  StrokeScore hull_score = {}, score = {};  // not measured by `none`
 };
 
 /// Drops parts of the hull so that depth jumps lie where strokes are drawn. The result lies inside the hull, keeps its
