@@ -4,6 +4,6 @@
 
 // A program outside the project: one voxel's surface is a solid.
 int main() {
-  const carve::VoxelGrid voxel({1, 1, 1}, carve::Vec3::Zero(), 1.0, true);
+  const carve::VoxelGrid voxel({1, 1, 1}, carve::Vec3::Zero(), 1.0, carve::Fill::full);
   return carve::topology(carve::marching_cubes(voxel)).solid() ? 0 : 1;
 }
