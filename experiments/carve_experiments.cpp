@@ -116,9 +116,7 @@ std::vector<std::string> specs_with_results(const Arguments& arguments) {
 int table_command(const Arguments& arguments) {
   for (const std::string& name : specs_with_results(arguments)) {
     const fs::path folder = arguments.results / name;
-    std::vector<std::string> complaints;
-    const Overview overview = load_overview(folder);
-    const std::vector<Record> records = load_records(folder, complaints);
+    const auto [overview, records, complaints] = load_results(folder);
     fs::create_directories(folder / "tables");
     const auto write = [&](const std::string& file, const std::string& text) {
       write_file(folder / "tables" / file, [&](std::ostream& out) { out << text; });
@@ -141,9 +139,7 @@ int table_command(const Arguments& arguments) {
 int plot_command(const Arguments& arguments) {
   for (const std::string& name : specs_with_results(arguments)) {
     const fs::path folder = arguments.results / name;
-    std::vector<std::string> complaints;
-    const Overview overview = load_overview(folder);
-    const std::vector<Record> records = load_records(folder, complaints);
+    const auto [overview, records, complaints] = load_results(folder);
     for (const RunMetric& metric : overview.metrics) plot(folder / "plots", metric.name, overview, records, metric);
     std::cout << (folder / "plots").string() << ": " << overview.metrics.size()
               << " figures as SVG, PDF, PNG, with CSV and script\n";
@@ -153,9 +149,9 @@ int plot_command(const Arguments& arguments) {
 
 int heat_maps_command(const Arguments& arguments) {
   for (const std::string& name : specs_with_results(arguments)) {
-    std::vector<std::string> complaints;
     const fs::path folder = arguments.results / name;
-    for (const fs::path& picture : draw_heat_maps_of(folder, load_overview(folder), load_records(folder, complaints)))
+    const Results found = load_results(folder);
+    for (const fs::path& picture : draw_heat_maps_of(folder, found.overview, found.records))
       std::cout << picture.string() << '\n';
   }
   return kDone;

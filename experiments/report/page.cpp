@@ -26,23 +26,6 @@ ul { padding-left: 1.2rem; }
 @media print { body { max-width: none; font-size: 11px; } h2 { break-before: page; } figure, table { break-inside: avoid; } nav { display: none; } }
 )";
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
-
 std::string base64(const std::string& bytes) {
   static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string out;
@@ -65,44 +48,32 @@ std::vector<fs::path> files_in(const fs::path& folder, const std::string& ending
   return files;
 }
 
-struct Results {
-  Overview overview;
-  std::vector<Record> records;
-  std::vector<std::string> complaints;
-};
-
-Results results_of(const fs::path& folder) {
-  Results results;
-  results.overview = load_overview(folder);
-  results.records = load_records(folder, results.complaints);
-  return results;
-}
-
 void html_figures(std::ostream& out, const fs::path& folder, const std::string& ending, const char* type) {
   for (const fs::path& file : files_in(folder, ending))
-    out << "<figure><img alt=\"" << escaped(file.stem().string()) << "\" src=\"data:image/" << type << ";base64,"
-        << base64(read_file(file)) << "\"><figcaption>" << escaped(file.stem().string()) << "</figcaption></figure>\n";
+    out << "<figure><img alt=\"" << html_text(file.stem().string()) << "\" src=\"data:image/" << type << ";base64,"
+        << base64(read_file(file)) << "\"><figcaption>" << html_text(file.stem().string())
+        << "</figcaption></figure>\n";
 }
 
 void html_spec(std::ostream& out, const fs::path& results, const std::string& name) {
   const fs::path folder = results / name;
-  const Results found = results_of(folder);
+  const Results found = load_results(folder);
   const auto done = std::count_if(found.records.begin(), found.records.end(), [](const Record& r) { return r.done(); });
-  out << "<h2 id=\"" << escaped(name) << "\">" << escaped(found.overview.title) << "</h2>\n<p class=\"note\">" << done
-      << " of " << found.overview.runs << " runs have a result; every run and metric: " << escaped(name)
+  out << "<h2 id=\"" << html_text(name) << "\">" << html_text(found.overview.title) << "</h2>\n<p class=\"note\">"
+      << done << " of " << found.overview.runs << " runs have a result; every run and metric: " << html_text(name)
       << "/tables/runs.csv</p>\n";
   for (const RunMetric& metric : found.overview.metrics)
     out << to_html(make_table(found.overview, found.records, metric));
   html_figures(out, folder / "plots", ".svg", "svg+xml");
   html_figures(out, folder / "heat_maps", ".png", "png");
-  for (const std::string& complaint : found.complaints) out << "<p class=\"note\">" << escaped(complaint) << "</p>\n";
+  for (const std::string& complaint : found.complaints) out << "<p class=\"note\">" << html_text(complaint) << "</p>\n";
 }
 
 // What the figures rest on: the distinct values of the runs' provenance, of which times of day say nothing.
 void html_provenance(std::ostream& out, const fs::path& results) {
   std::map<std::string, std::vector<std::string>> values;
   for (const std::string& name : specs_in(results))
-    for (const Record& record : results_of(results / name).records)
+    for (const Record& record : load_results(results / name).records)
       for (const auto& [key, value] : record.provenance) {
         std::vector<std::string>& known = values[key];
         if (key != "date" && key != "reference" && std::find(known.begin(), known.end(), value) == known.end())
@@ -111,8 +82,8 @@ void html_provenance(std::ostream& out, const fs::path& results) {
   out << "<footer><h2>Where the figures come from</h2><ul>\n";
   for (const auto& [key, known] : values) {
     if (known.empty()) continue;
-    out << "<li>" << escaped(key) << ": ";
-    for (std::size_t i = 0; i < known.size(); ++i) out << (i ? "; " : "") << escaped(known[i]);
+    out << "<li>" << html_text(key) << ": ";
+    for (std::size_t i = 0; i < known.size(); ++i) out << (i ? "; " : "") << html_text(known[i]);
     out << "</li>\n";
   }
   out << "</ul></footer>\n";
@@ -128,7 +99,7 @@ std::string html_report(const fs::path& results) {
          "initial-scale=1\"><title>Carve: results</title><style>"
       << kStyle << "</style></head><body>\n<h1>Carve: results</h1>\n<nav>";
   for (const std::string& name : specs_in(results))
-    out << "<a href=\"#" << escaped(name) << "\">" << escaped(name) << "</a>";
+    out << "<a href=\"#" << html_text(name) << "\">" << html_text(name) << "</a>";
   out << "</nav>\n";
   for (const std::string& name : specs_in(results)) html_spec(out, results, name);
   html_provenance(out, results);
@@ -142,7 +113,7 @@ std::string markdown_report(const fs::path& results) {
   out << "# Results\n\n";
   for (const std::string& name : specs_in(results)) {
     const fs::path folder = results / name;
-    const Results found = results_of(folder);
+    const Results found = load_results(folder);
     out << "## " << found.overview.title << "\n\n";
     for (const RunMetric& metric : found.overview.metrics)
       out << to_markdown(make_table(found.overview, found.records, metric)) << "\n";

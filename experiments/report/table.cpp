@@ -166,12 +166,6 @@ std::vector<std::string> notes_of(const Table& table) {
   return notes;
 }
 
-std::string html_text(const std::string& text) {
-  std::string out;
-  for (const char c : text) out += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
-  return out;
-}
-
 std::string legend(const RunMetric& metric) {
   const char* better = metric.better == Direction::lower    ? "lower is better"
                        : metric.better == Direction::higher ? "higher is better"
@@ -193,6 +187,13 @@ std::string short_text(double value) {
   const auto end = plain ? std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed, decimals)
                          : std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::scientific, 2);
   return {buffer, end.ptr};
+}
+
+std::string html_text(const std::string& text) {
+  std::string out;
+  for (const char c : text)
+    out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c);
+  return out;
 }
 
 Table make_table(const Overview& overview, const std::vector<Record>& records, const RunMetric& metric) {

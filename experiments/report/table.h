@@ -42,6 +42,9 @@ std::string to_latex(const Table& table);  // booktabs
 /// Four significant digits, C locale; "-" for what is not finite.
 std::string short_text(double value);
 
+/// Text as it may stand in an HTML element or attribute.
+std::string html_text(const std::string& text);
+
 /// Every run and metric in one long table: spec, model, method, swept fields, seed, status, metric, value.
 std::string long_csv(const std::vector<Record>& records);
 

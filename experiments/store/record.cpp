@@ -123,6 +123,13 @@ Overview load_overview(const fs::path& folder) {
   return overview_from_json(read_file(file), file.string());
 }
 
+Results load_results(const fs::path& folder) {
+  Results results;
+  results.overview = load_overview(folder);
+  results.records = load_records(folder, results.complaints);
+  return results;
+}
+
 std::vector<std::string> specs_in(const fs::path& results) {
   std::vector<std::string> names;
   std::error_code none;

@@ -54,6 +54,14 @@ Overview overview_from_json(const std::string& json, const std::string& path);
 std::vector<Record> load_records(const std::filesystem::path& folder, std::vector<std::string>& complaints);
 Overview load_overview(const std::filesystem::path& folder);
 
+/// All that a spec's runs left in its folder.
+struct Results {
+  Overview overview;
+  std::vector<Record> records;
+  std::vector<std::string> complaints;
+};
+Results load_results(const std::filesystem::path& folder);
+
 /// The specs that have results below a folder, by name.
 std::vector<std::string> specs_in(const std::filesystem::path& results);
 
