@@ -2,7 +2,6 @@
 
 #include "apps/command_line.h"
 #include "carve/core/file.h"
-#include "carve/core/parallel.h"
 #include "carve/mesh/mesh_io.h"
 #include "eval/about.h"
 #include "eval/error_split.h"
@@ -17,11 +16,9 @@ struct Arguments {
   fs::path reference, csv;
   CompareOptions options;
   bool json = false, split = false;
-  int threads = 0;
 };
 
 int compare(const Arguments& arguments) {
-  set_thread_count(arguments.threads);
   check("", arguments.options);
   const Reference reference =
       about(arguments.reference, [&] { return Reference(read_mesh(arguments.reference), arguments.options); });
@@ -52,16 +49,13 @@ int main(int argc, char** argv) {
   app.add_option("compared", arguments.compared, "meshes, or PLY clouds: .ply .obj .off .stl .glb")
       ->required()
       ->type_name("FILE");
-  app.add_option("--reference", arguments.reference, "the mesh they are measured against")
-      ->required()
-      ->type_name("FILE");
+  add_reference_flag(app, arguments.reference);
   const auto json = app.add_flag("--json", arguments.json, "JSON on standard output");
   app.add_flag("--split", arguments.split,
                "the compared meshes are stages (exact hull, voxels, result): what each adds to the error")
       ->excludes(json);
   app.add_option("--csv", arguments.csv, "also write a line a file and metric")->type_name("FILE");
-  app.add_option("--threads", arguments.threads, "threads to use; 0 = all cores; never changes the result")
-      ->check(CLI::Range(0, 1024));
+  add_threads_flag(app);
   std::vector<Field> options;
   add_fields(options, "", arguments.options);
   add_flags(app, options);

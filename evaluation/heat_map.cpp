@@ -3,7 +3,6 @@
 #include <iostream>
 
 #include "apps/command_line.h"
-#include "carve/core/parallel.h"
 #include "carve/mesh/mesh_io.h"
 #include "eval/about.h"
 #include "eval/compare.h"
@@ -17,11 +16,9 @@ struct Arguments {
   std::vector<std::string> titles;
   fs::path reference;
   HeatMapOptions options;
-  int threads = 0;
 };
 
 int draw(const Arguments& arguments) {
-  set_thread_count(arguments.threads);
   check("", arguments.options);
   for (const fs::path& path : arguments.out) check_heat_output(path, arguments.compared.size());
   if (!arguments.titles.empty() && arguments.titles.size() != arguments.compared.size())
@@ -50,15 +47,12 @@ int main(int argc, char** argv) {
   Arguments arguments;
   CLI::App app("Colours meshes by their distance to a reference; several side by side on one scale.", "heat_map");
   app.add_option("compared", arguments.compared, ".ply .obj .off .stl .glb")->required()->type_name("FILE");
-  app.add_option("--reference", arguments.reference, "the mesh they are measured against")
-      ->required()
-      ->type_name("FILE");
+  add_reference_flag(app, arguments.reference);
   app.add_option("-o,--output", arguments.out, "picture (.png), or one coloured mesh (.ply, .vtp); may be repeated")
       ->required()
       ->type_name("FILE");
   app.add_option("--titles", arguments.titles, "one a compared mesh; their files' names without it")->delimiter(',');
-  app.add_option("--threads", arguments.threads, "threads to use; 0 = all cores; never changes the result")
-      ->check(CLI::Range(0, 1024));
+  add_threads_flag(app);
   std::vector<Field> options;
   add_fields(options, "", arguments.options);
   add_flags(app, options);

@@ -2,7 +2,6 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/command_line.h"
-#include "carve/core/parallel.h"
 #include "carve/mesh/mesh_io.h"
 #include "eval/check.h"
 
@@ -29,20 +28,15 @@ int check_files(const std::vector<std::filesystem::path>& files, bool json) {
 int main(int argc, char** argv) {
   std::vector<std::filesystem::path> files;
   bool json = false;
-  int threads = 0;
   CLI::App app(
       "Whether meshes are closed, oriented 2-manifolds without self-intersections and degenerate triangles, around a "
       "positive volume.",
       "mesh_check");
   app.add_option("meshes", files, ".ply .obj .off .stl .glb")->required()->type_name("FILE");
   app.add_flag("--json", json, "JSON on standard output");
-  app.add_option("--threads", threads, "threads to use; 0 = all cores; never changes the result")
-      ->check(CLI::Range(0, 1024));
+  add_threads_flag(app);
   app.footer(
       "Example:\n  mesh_check result.glb && echo printable\n"
       "Exit codes: 0 all pass, 1 the work could not be done, 2 wrong usage or bad input, 3 a mesh fails.");
-  return run_program(app, argc, argv, [&] {
-    set_thread_count(threads);
-    return check_files(files, json);
-  });
+  return run_program(app, argc, argv, [&] { return check_files(files, json); });
 }

@@ -2,7 +2,6 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/command_line.h"
-#include "carve/core/parallel.h"
 #include "carve/image/read_image.h"
 #include "carve/mesh/mesh_io.h"
 #include "eval/about.h"
@@ -20,7 +19,6 @@ struct Arguments {
   AlignOptions align;
   SilhouetteOptions options;
   bool json = false;
-  int threads = 0;
 };
 
 Drawing read_drawing(const fs::path& path, const DrawingOptions& options) try {
@@ -30,7 +28,6 @@ Drawing read_drawing(const fs::path& path, const DrawingOptions& options) try {
 }
 
 int check_silhouettes(const Arguments& arguments) {
-  set_thread_count(arguments.threads);
   const Mesh mesh = read_mesh(arguments.mesh);
   std::map<View, Drawing> drawings;
   for (const auto& [view, path] : arguments.drawings)
@@ -67,8 +64,7 @@ int main(int argc, char** argv) {
   app.add_flag("--json", arguments.json, "JSON on standard output");
   app.add_option("--overlays", arguments.overlays, "folder for one picture a view: drawing and mesh over each other")
       ->check(CLI::ExistingDirectory);
-  app.add_option("--threads", arguments.threads, "threads to use; 0 = all cores; never changes the result")
-      ->check(CLI::Range(0, 1024));
+  add_threads_flag(app);
   std::vector<Field> options;
   add_fields(options, "", arguments.options);
   add_fields(options, "drawing", arguments.drawing);

@@ -7,7 +7,6 @@
 #include "carve/core/error.h"
 #include "carve/core/file.h"
 #include "carve/core/options.h"
-#include "carve/core/parallel.h"
 #include "carve/image/read_image.h"
 #include "carve/mesh/mesh_io.h"
 #include "models/outer_surface.h"
@@ -22,7 +21,6 @@ struct Arguments {
   std::vector<std::string> models = {"procedural"};
   std::string artist, out = "drawings";
   bool list = false;
-  int threads = 0;
   SynthesizeOptions options;
   DegradeOptions degrade;
   OuterSurfaceOptions outer;
@@ -100,11 +98,10 @@ int main(int argc, char** argv) {
   app.add_option("--artist", arguments.artist, "a folder of models: NAME.obj or NAME/model.obj");
   app.add_option("-o,--out", arguments.out, "a folder NAME is made in it for each model")->capture_default_str();
   app.add_flag("--list", arguments.list, "print the models' names and stop");
-  app.add_option("--threads", arguments.threads, "0: all cores")->check(CLI::Range(0, 1024));
+  add_threads_flag(app);
   const std::vector<Field> options = fields(arguments);
   add_flags(app, options);
   return run_program(app, argc, argv, [&] {
-    set_thread_count(arguments.threads);
     if (arguments.list)
       list(arguments);
     else

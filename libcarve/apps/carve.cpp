@@ -7,7 +7,6 @@
 
 #include "apps/command_line.h"
 #include "carve/core/file.h"
-#include "carve/core/parallel.h"
 #include "carve/image/read_image.h"
 #include "carve/mesh/mesh_io.h"
 #include "carve/pipeline/reconstruct.h"
@@ -24,7 +23,6 @@ struct Arguments {
   std::vector<fs::path> files;
   bool json = false;
   bool quiet = false;
-  int threads = 0;
 };
 
 Json json_of(const Drawing& drawing) {
@@ -151,7 +149,6 @@ void refuse_to_overwrite_input(const Arguments& arguments) {
 }
 
 int build(const Arguments& arguments) {
-  set_thread_count(arguments.threads);
   refuse_to_overwrite_input(arguments);
   const auto start = std::chrono::steady_clock::now();
   auto drawings = read_drawings(arguments.drawings, arguments.options.drawing);
@@ -195,8 +192,7 @@ int main(int argc, char** argv) {
       ->type_name("FILE")
       ->trigger_on_parse();
   build_command->add_option("--json", arguments.report, "write what was done as JSON")->type_name("FILE");
-  build_command->add_option("--threads", arguments.threads, "threads to use; 0 = all cores; never changes the result")
-      ->check(CLI::Range(0, 1024));
+  add_threads_flag(*build_command);
   build_command->add_flag("-q,--quiet", arguments.quiet, "say nothing but errors");
   add_flags(*build_command, options);
   build_command->footer(

@@ -4,6 +4,7 @@
 #include <new>
 
 #include "carve/core/error.h"
+#include "carve/core/parallel.h"
 
 namespace carve {
 namespace {
@@ -39,6 +40,18 @@ void add_flags(CLI::App& app, std::span<const Field> fields) {
         ->group(field.name.find('.') == std::string::npos ? "Options" : field.name.substr(0, field.name.find('.')))
         ->trigger_on_parse();
   }
+}
+
+void add_threads_flag(CLI::App& app) {
+  app.add_option_function<int>(
+         "--threads", [](const int& threads) { set_thread_count(threads); },
+         "threads to use; 0 = all cores; never changes the result")
+      ->check(CLI::Range(0, 1024))
+      ->default_str("0");
+}
+
+void add_reference_flag(CLI::App& app, std::filesystem::path& reference) {
+  app.add_option("--reference", reference, "the mesh they are measured against")->required()->type_name("FILE");
 }
 
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& work) {

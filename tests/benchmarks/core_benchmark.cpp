@@ -1,4 +1,4 @@
-// Carving and surface extraction: drawings of 512 x 512 pixels, grids of 256 to 2048 voxels.
+// Carving and surface extraction: drawings of 512 x 512 pixels, grids of 256 to 2048 voxels; the couch at grid 128.
 #include <benchmark/benchmark.h>
 
 #include <map>
@@ -7,7 +7,10 @@
 #include "carve/core/parallel.h"
 #include "carve/surface/crossings.h"
 #include "carve/surface/marching_cubes.h"
+#include "carve/surface/smooth.h"
+#include "models/procedural.h"
 #include "shapes.h"
+#include "synthesize/synthesize.h"
 
 namespace carve {
 namespace {
@@ -67,11 +70,30 @@ void BM_Whole(benchmark::State& state) {
   });
 }
 
+const ViewSet& couch_views() {
+  static const ViewSet views = [] {
+    std::map<View, Drawing> drawings;
+    for (auto& [view, picture] : synthesize(couch())) drawings.emplace(view, understand_drawing(std::move(picture)));
+    return align(std::move(drawings));
+  }();
+  return views;
+}
+
+// Drawings to closed mesh without consistency and convex refinement, whose time depends on what is drawn.
+void BM_Couch(benchmark::State& state) {
+  couch_views();
+  measure(state, [](int grid) {
+    const Carving carving = carve_silhouettes(couch_views(), {.grid = grid});
+    return smooth(marching_cubes(carving.grid, contour_crossings(couch_views(), carving.grid)));
+  });
+}
+
 constexpr auto kUnit = benchmark::kMillisecond;
 BENCHMARK(BM_PatchLabels)->ArgsProduct({{256, 512, 1024}, {1, 2}})->Unit(kUnit)->UseRealTime();
 BENCHMARK(BM_CarveSilhouettes)->ArgsProduct({{256, 512, 1024}, {1, 2}})->Unit(kUnit)->UseRealTime();
 BENCHMARK(BM_ContourCrossings)->ArgsProduct({{256, 512}, {1, 2}})->Unit(kUnit)->UseRealTime();
 BENCHMARK(BM_MarchingCubes)->ArgsProduct({{256, 512}, {1, 2}})->Unit(kUnit)->UseRealTime();
+BENCHMARK(BM_Couch)->ArgsProduct({{128}, {1, 2}})->Unit(kUnit)->UseRealTime();
 BENCHMARK(BM_Whole)->ArgsProduct({{2048}, {1, 2}})->Unit(kUnit)->UseRealTime()->Iterations(1);
 
 }  // namespace
