@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <ostream>
 
-#include "eval/self_intersections.h"
+#include "carve/mesh/self_intersections.h"
 
 namespace carve {
 

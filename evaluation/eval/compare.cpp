@@ -8,8 +8,8 @@
 #include <stdexcept>
 
 #include "carve/core/options.h"
+#include "carve/mesh/self_intersections.h"
 #include "eval/sample.h"
-#include "eval/self_intersections.h"
 #include "eval/volume_iou.h"
 
 namespace carve {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "carve/core/parallel.h"
-#include "eval/bvh.h"
+#include "carve/mesh/bvh.h"
 #include "eval/morton.h"
 #include "eval/point_triangle_kernel.h"
 #include "eval/triangle_leaf.h"

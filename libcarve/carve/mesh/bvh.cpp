@@ -1,4 +1,4 @@
-#include "eval/bvh.h"
+#include "carve/mesh/bvh.h"
 
 #include <algorithm>
 #include <array>

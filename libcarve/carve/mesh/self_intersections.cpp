@@ -1,4 +1,4 @@
-#include "eval/self_intersections.h"
+#include "carve/mesh/self_intersections.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Intersections_3/Segment_3_Triangle_3.h>
@@ -8,7 +8,7 @@
 #include <array>
 
 #include "carve/core/parallel.h"
-#include "eval/bvh.h"
+#include "carve/mesh/bvh.h"
 
 namespace carve {
 namespace {

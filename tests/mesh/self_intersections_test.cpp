@@ -1,4 +1,4 @@
-#include "eval/self_intersections.h"
+#include "carve/mesh/self_intersections.h"
 
 #include <gtest/gtest.h>
 
