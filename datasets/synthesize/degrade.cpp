@@ -2,18 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-// jpeglib.h needs size_t and FILE.
-#include <cstdio>
-// clang-format off
-#include <jpeglib.h>
-// clang-format on
-#include <cstdlib>
-#include <memory>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "carve/image/read_image.h"
+#include "carve/image/write_jpeg.h"
 
 namespace carve {
 namespace {
@@ -46,45 +39,6 @@ double wave(double x, double y, View view, int purpose, const DegradeOptions& op
   const auto ease = [](double t) { return t * t * (3 - 2 * t); };
   const double u = ease(x / kLength - fx), v = ease(y / kLength - fy);
   return (at(0, 0) * (1 - u) + at(1, 0) * u) * (1 - v) + (at(0, 1) * (1 - u) + at(1, 1) * u) * v;
-}
-
-std::uint8_t over_white(std::uint8_t value, std::uint8_t alpha) {
-  return static_cast<std::uint8_t>((value * alpha + 255 * (255 - alpha) + 127) / 255);
-}
-
-Picture through_jpeg(const Picture& picture, int quality) {
-  jpeg_compress_struct info{};
-  jpeg_error_mgr errors{};
-  info.err = jpeg_std_error(&errors);
-  errors.error_exit = [](j_common_ptr common) {
-    char message[JMSG_LENGTH_MAX];
-    common->err->format_message(common, message);
-    throw std::runtime_error(std::string("JPEG: ") + message);
-  };
-  unsigned char* bytes = nullptr;
-  unsigned long size = 0;
-  jpeg_create_compress(&info);
-  const std::unique_ptr<jpeg_compress_struct, void (*)(jpeg_compress_struct*)> guard(&info, jpeg_destroy_compress);
-  jpeg_mem_dest(&info, &bytes, &size);
-  info.image_width = static_cast<unsigned>(picture.width);
-  info.image_height = static_cast<unsigned>(picture.height);
-  info.input_components = 3;
-  info.in_color_space = JCS_RGB;
-  jpeg_set_defaults(&info);
-  jpeg_set_quality(&info, quality, TRUE);
-  jpeg_start_compress(&info, TRUE);
-  std::vector<std::uint8_t> row(static_cast<std::size_t>(picture.width) * 3);
-  for (int y = 0; y < picture.height; ++y) {
-    for (int x = 0; x < picture.width; ++x) {
-      const Rgba p = picture(x, y);
-      row[3 * x] = over_white(p.r, p.a), row[3 * x + 1] = over_white(p.g, p.a), row[3 * x + 2] = over_white(p.b, p.a);
-    }
-    JSAMPROW line = row.data();
-    jpeg_write_scanlines(&info, &line, 1);
-  }
-  jpeg_finish_compress(&info);
-  const std::unique_ptr<unsigned char, void (*)(void*)> owned(bytes, std::free);
-  return decode_image(std::string_view(reinterpret_cast<const char*>(bytes), size), "JPEG round trip");
 }
 
 void add_noise(Picture& picture, View view, const DegradeOptions& options) {
@@ -143,7 +97,7 @@ void rub_out(Raster<std::uint8_t>& ink, double stroke, View view, const DegradeO
 
 Picture reproduce(Picture picture, View view, const DegradeOptions& options) {
   if (options.noise > 0) add_noise(picture, view, options);
-  if (options.jpeg) return through_jpeg(picture, *options.jpeg);
+  if (options.jpeg) return decode_image(encode_jpeg(picture, *options.jpeg), "JPEG round trip");
   return picture;
 }
 

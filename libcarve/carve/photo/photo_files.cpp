@@ -1,0 +1,112 @@
+#include "carve/photo/photo_files.h"
+
+#include <Eigen/Geometry>
+#include <cstdio>
+#include <locale>
+#include <ostream>
+#include <stdexcept>
+
+#include "carve/core/error.h"
+#include "carve/core/file.h"
+#include "carve/image/read_image.h"
+#include "carve/image/write_jpeg.h"
+
+namespace carve {
+namespace fs = std::filesystem;
+namespace {
+
+std::string numbered(int index, const char* ending) {
+  char name[40];
+  std::snprintf(name, sizeof name, "%08d%s", index, ending);
+  return name;
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw IoError(folder.string(), "cannot write: " + error.message(), IoError::Side::output);
+}
+
+// Numbers that read back to the same doubles, in the C locale.
+void write_text(const fs::path& path, const std::function<void(std::ostream&)>& write) {
+  write_file(path, [&](std::ostream& out) {
+    out.imbue(std::locale::classic());
+    out.precision(17);
+    write(out);
+  });
+}
+
+void check_any(std::span<const Photo> photos) {
+  if (photos.empty()) throw std::invalid_argument("there must be at least one photo to write");
+  check_photos(photos);
+}
+
+void write_contour(std::ostream& out, Camera camera) {
+  camera.principal -= Vec2::Constant(0.5);
+  const Eigen::Matrix<double, 3, 4> matrix = projection(camera);
+  out << "CONTOUR\n";
+  for (int i = 0; i < 3; ++i)
+    out << matrix(i, 0) << ' ' << matrix(i, 1) << ' ' << matrix(i, 2) << ' ' << matrix(i, 3) << '\n';
+}
+
+void write_pgm(std::ostream& out, const Mask& mask) {
+  out << "P5\n" << mask.width << ' ' << mask.height << "\n255\n";
+  for (const std::uint8_t inside : mask.pixels) out.put(static_cast<char>(inside ? 255 : 0));
+}
+
+Picture picture_of(const Mask& mask) {
+  Picture picture(mask.width, mask.height, {0, 0, 0, 255});
+  for (std::size_t i = 0; i < mask.pixels.size(); ++i)
+    if (mask.pixels[i]) picture.pixels[i] = {255, 255, 255, 255};
+  return picture;
+}
+
+}  // namespace
+
+void write_pmvs(const fs::path& folder, std::span<const Photo> photos, bool masks) {
+  check_any(photos);
+  for (const char* part : {"visualize", "txt", "models"}) make_folder(folder / part);
+  if (masks) make_folder(folder / "masks");
+  for (int i = 0; i < static_cast<int>(photos.size()); ++i) {
+    const Photo& photo = photos[i];
+    write_file(folder / "visualize" / numbered(i, ".jpg"),
+               [&](std::ostream& out) { out << encode_jpeg(photo.picture, 100); });
+    write_text(folder / "txt" / numbered(i, ".txt"), [&](std::ostream& out) { write_contour(out, photo.camera); });
+    if (masks)
+      write_file(folder / "masks" / numbered(i, ".pgm"), [&](std::ostream& out) { write_pgm(out, photo.mask); });
+  }
+  write_text(folder / "option.txt", [&](std::ostream& out) {
+    out << "level 1\ncsize 2\nthreshold 0.7\nwsize 7\nminImageNum 3\nCPU 1\nsetEdge 0\nuseBound 0\nuseVisData 0\n"
+        << "sequence -1\ntimages -1 0 " << photos.size() << "\noimages 0\n";
+  });
+}
+
+void write_colmap(const fs::path& folder, std::span<const Photo> photos) {
+  check_any(photos);
+  for (const char* part : {"images", "masks", "sparse"}) make_folder(folder / part);
+  for (int i = 0; i < static_cast<int>(photos.size()); ++i) {
+    write_png(folder / "images" / numbered(i, ".png"), photos[i].picture);
+    write_png(folder / "masks" / numbered(i, ".png.png"), picture_of(photos[i].mask));
+  }
+  write_text(folder / "sparse" / "cameras.txt", [&](std::ostream& out) {
+    out << "# CAMERA_ID, MODEL, WIDTH, HEIGHT, fx, fy, cx, cy\n";
+    for (std::size_t i = 0; i < photos.size(); ++i) {
+      const Camera& c = photos[i].camera;
+      out << i + 1 << " PINHOLE " << c.width << ' ' << c.height << ' ' << c.focal << ' ' << c.focal << ' '
+          << c.principal.x() << ' ' << c.principal.y() << '\n';
+    }
+  });
+  write_text(folder / "sparse" / "images.txt", [&](std::ostream& out) {
+    out << "# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME; then its points, none\n";
+    for (std::size_t i = 0; i < photos.size(); ++i) {
+      const Camera& c = photos[i].camera;
+      const Eigen::Quaterniond q(c.rotation);
+      out << i + 1 << ' ' << q.w() << ' ' << q.x() << ' ' << q.y() << ' ' << q.z() << ' ' << c.translation.x() << ' '
+          << c.translation.y() << ' ' << c.translation.z() << ' ' << i + 1 << ' '
+          << numbered(static_cast<int>(i), ".png") << "\n\n";
+    }
+  });
+  write_text(folder / "sparse" / "points3D.txt", [](std::ostream& out) { out << "# no points yet\n"; });
+}
+
+}  // namespace carve
