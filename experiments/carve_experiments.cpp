@@ -24,6 +24,7 @@ struct Arguments {
   std::vector<fs::path> specs;
   fs::path results = "results", other;
   RunnerOptions runner;
+  ReportOptions report = {.published = CARVE_PUBLISHED, .three = CARVE_THREE};
   std::string shard = "0/1";
   std::string cell;
   int threads = 1;
@@ -122,7 +123,10 @@ int table_command(const Arguments& arguments) {
       write_file(folder / "tables" / file, [&](std::ostream& out) { out << text; });
     };
     write("runs.csv", long_csv(records));
-    std::string all;
+    const TextTable means = summary(overview, records);
+    write("summary.md", markdown(means));
+    write("summary.tex", latex(means));
+    std::string all = markdown(means) + "\n";
     for (const RunMetric& metric : overview.metrics) {
       const Table table = make_table(overview, records, metric);
       write(metric.name + ".md", to_markdown(table));
@@ -162,8 +166,8 @@ int report_command(const Arguments& arguments) {
     write_file(arguments.results / name, [&](std::ostream& out) { out << text; });
     std::cout << (arguments.results / name).string() << '\n';
   };
-  write("report.md", markdown_report(arguments.results));
-  write("report.html", html_report(arguments.results));
+  write("report.md", markdown_report(arguments.results, arguments.report));
+  write("report.html", html_report(arguments.results, arguments.report));
   return kDone;
 }
 
@@ -225,7 +229,13 @@ int main(int argc, char** argv) {
 
   add("plot", "draw figures from results (gnuplot)", plot_command, false);
   add("heatmaps", "draw the methods' distances to the reference side by side", heat_maps_command, false);
-  add("report", "write report.html and report.md from all results", report_command, false);
+  CLI::App* page = add("report", "write report.html and report.md from all results", report_command, false);
+  page->add_option("--published", arguments.report.published, "folder of the thesis's tables; empty leaves them out")
+      ->capture_default_str();
+  page->add_option("--three", arguments.report.three, "folder of three.js, for the 3-D view")->capture_default_str();
+  page->add_option("--mesh-megabytes", arguments.report.mesh_megabytes, "share of the page that the 3-D view may take")
+      ->check(CLI::Range(0.1, 500.0))
+      ->capture_default_str();
   CLI::App* both = app.add_subcommand("compare", "two folders of results side by side, paired by run");
   both->add_option("a", arguments.results, "results")->required()->type_name("RESULTS_A");
   both->add_option("b", arguments.other, "other results")->required()->type_name("RESULTS_B");

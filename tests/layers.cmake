@@ -27,7 +27,7 @@ foreach(source IN LISTS sources)
 endforeach()
 
 # evaluation knows meshes and points, never how they were made; the report reads results only.
-foreach(rule "evaluation|core image views mesh" "experiments/report|core image")
+foreach(rule "evaluation|core image views mesh" "experiments/report|core image mesh")
   string(REGEX REPLACE "\\|.*" "" part ${rule})
   string(REGEX REPLACE ".*\\|" "" allowed ${rule})
   string(REPLACE " " ";" allowed "${allowed}")

@@ -1,42 +1,47 @@
 #include "report/page.h"
 
+#include <webp/encode.h>
+
 #include <algorithm>
 #include <sstream>
 
+#include "carve/core/error.h"
 #include "carve/core/file.h"
+#include "carve/image/read_image.h"
+#include "report/display_mesh.h"
+#include "report/published.h"
 #include "report/table.h"
+#include "report/viewer.h"
+
+// The page's style, between two symbols.
+__asm__(
+    ".section .rodata\n"
+    "carve_style_begin: .incbin \"" CARVE_STYLE
+    "\"\n"
+    ".byte 0\n"
+    ".previous\n");
+extern "C" const char carve_style_begin[];
 
 namespace carve::experiments {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kStyle = R"(
-:root { color-scheme: light; --ink: #1d2433; --soft: #5b6577; --line: #d9dee7; --best: #e6f2ec; }
-body { font: 16px/1.5 system-ui, sans-serif; color: var(--ink); max-width: 72rem; margin: 0 auto; padding: 1rem; }
-h1 { font-size: 1.7rem; } h2 { margin-top: 3rem; border-bottom: 2px solid var(--line); } h3 { margin-bottom: .2rem; }
-p.note, figcaption, footer { color: var(--soft); font-size: .9rem; margin: .2rem 0 .6rem; }
-nav a { margin-right: 1rem; }
-.wide { overflow-x: auto; }
-table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: .92rem; }
-th, td { padding: .25rem .7rem; text-align: right; border-bottom: 1px solid var(--line); }
-th:first-child, td:first-child { text-align: left; } tr.summary td { border-top: 1px solid var(--ink); }
-td.best { background: var(--best); font-weight: 600; }
-figure { margin: 1rem 0; } figure img { max-width: 100%; height: auto; }
-ul { padding-left: 1.2rem; }
-@media print { body { max-width: none; font-size: 11px; } h2 { break-before: page; } figure, table { break-inside: avoid; } nav { display: none; } }
-)";
+constexpr const char* kSummaryNote =
+    "Means over the rows that every method has, in brackets the change from the baseline; arrows point to the better "
+    "side, "
+    "the best of a column is marked. Lengths are in % of the diagonal of the reference's box.";
 
-std::string base64(const std::string& bytes) {
-  static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  out.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    unsigned block = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      block = block << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k) out += i + k <= bytes.size() ? digits[block >> (18 - 6 * k) & 63] : '=';
-  }
-  return out;
+// A picture as WebP: a tenth of its PNG, which stays in the results.
+std::string webp(const fs::path& file) {
+  const Picture picture = read_image(file);
+  constexpr float kQuality = 85;
+  std::uint8_t* bytes = nullptr;
+  const std::size_t size =
+      WebPEncodeRGBA(&picture.pixels.front().r, picture.width, picture.height, 4 * picture.width, kQuality, &bytes);
+  if (size == 0) throw IoError(file.string(), "cannot be written as WebP");
+  std::string encoded(reinterpret_cast<const char*>(bytes), size);
+  WebPFree(bytes);
+  return encoded;
 }
 
 std::vector<fs::path> files_in(const fs::path& folder, const std::string& ending) {
@@ -48,38 +53,54 @@ std::vector<fs::path> files_in(const fs::path& folder, const std::string& ending
   return files;
 }
 
-void html_figures(std::ostream& out, const fs::path& folder, const std::string& ending, const char* type) {
-  for (const fs::path& file : files_in(folder, ending))
-    out << "<figure><img alt=\"" << html_text(file.stem().string()) << "\" src=\"data:image/" << type << ";base64,"
-        << base64(read_file(file)) << "\"><figcaption>" << html_text(file.stem().string())
-        << "</figcaption></figure>\n";
+std::string figure_of(const std::string& title, const std::string& type, const std::string& bytes) {
+  return "<figure><img loading=\"lazy\" alt=\"" + html_text(title) + "\" src=\"data:image/" + type + ";base64," +
+         base64(bytes) + "\"><figcaption>" + html_text(title) + "</figcaption></figure>\n";
 }
 
-void html_spec(std::ostream& out, const fs::path& results, const std::string& name) {
+void html_pictures(std::ostream& out, const fs::path& folder, const char* title) {
+  const std::vector<fs::path> files = files_in(folder, ".png");
+  if (files.empty()) return;
+  out << "<h3>" << title << "</h3>\n<div class=\"gallery\">\n";
+  for (const fs::path& file : files) out << figure_of(file.stem().string(), "webp", webp(file));
+  out << "</div>\n";
+}
+
+void html_spec(std::ostream& out, const fs::path& results, const std::string& name, const Results& found) {
   const fs::path folder = results / name;
-  const Results found = load_results(folder);
   const auto done = std::count_if(found.records.begin(), found.records.end(), [](const Record& r) { return r.done(); });
-  out << "<h2 id=\"" << html_text(name) << "\">" << html_text(found.overview.title) << "</h2>\n<p class=\"note\">"
-      << done << " of " << found.overview.runs << " runs have a result; every run and metric: " << html_text(name)
-      << "/tables/runs.csv</p>\n";
-  for (const RunMetric& metric : found.overview.metrics)
-    out << to_html(make_table(found.overview, found.records, metric));
-  html_figures(out, folder / "plots", ".svg", "svg+xml");
-  html_figures(out, folder / "heat_maps", ".png", "png");
+  out << "<section><h2 id=\"" << html_text(name) << "\">" << html_text(found.overview.title)
+      << "</h2>\n<p class=\"note\">" << done << " of " << found.overview.runs
+      << " runs have a result; every run and metric: " << html_text(name)
+      << "/tables/runs.csv</p>\n<h3>Summary</h3>\n<div class=\"summary\">"
+      << html(summary(found.overview, found.records)) << "</div>"
+      << "<p class=\"note\">" << kSummaryNote << "</p>\n";
+  for (const RunMetric& metric : found.overview.metrics) {
+    out << "<h3>" << html_text(metric.name) << "</h3><p class=\"note\">" << html_text(legend(metric))
+        << "</p>\n<div class=\"metric\"><div>" << to_html(make_table(found.overview, found.records, metric))
+        << "</div><div>";
+    if (const fs::path file = folder / "plots" / (metric.name + ".svg"); fs::exists(file))
+      out << figure_of(found.overview.title + ": " + metric.name, "svg+xml", read_file(file));
+    out << "</div></div>\n";
+  }
+  html_pictures(out, folder / "heat_maps", "Signed distance to the reference");
+  html_pictures(out, folder / "renders", "Drawings and meshes");
   for (const std::string& complaint : found.complaints) out << "<p class=\"note\">" << html_text(complaint) << "</p>\n";
+  out << "</section>\n";
 }
 
 // What the figures rest on: the distinct values of the runs' provenance, of which times of day say nothing.
-void html_provenance(std::ostream& out, const fs::path& results) {
+void html_provenance(std::ostream& out, const std::vector<std::pair<std::string, Results>>& specs) {
   std::map<std::string, std::vector<std::string>> values;
-  for (const std::string& name : specs_in(results))
-    for (const Record& record : load_results(results / name).records)
+  for (const auto& [name, found] : specs)
+    for (const Record& record : found.records)
       for (const auto& [key, value] : record.provenance) {
         std::vector<std::string>& known = values[key];
-        if (key != "date" && key != "reference" && std::find(known.begin(), known.end(), value) == known.end())
+        if (key != "date" && key != "load" && key != kReferenceKey &&
+            std::find(known.begin(), known.end(), value) == known.end())
           known.push_back(value);
       }
-  out << "<footer><h2>Where the figures come from</h2><ul>\n";
+  out << "<footer><h2 id=\"provenance\">Where the figures come from</h2><ul>\n";
   for (const auto& [key, known] : values) {
     if (known.empty()) continue;
     out << "<li>" << html_text(key) << ": ";
@@ -91,36 +112,56 @@ void html_provenance(std::ostream& out, const fs::path& results) {
 
 }  // namespace
 
-std::string html_report(const fs::path& results) {
+std::string html_report(const fs::path& results, const ReportOptions& options) {
   std::ostringstream out;
   out.imbue(std::locale::classic());
   out << "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
-         "content=\"width=device-width, "
-         "initial-scale=1\"><title>Carve: results</title><style>"
-      << kStyle << "</style></head><body>\n<h1>Carve: results</h1>\n<nav>";
-  for (const std::string& name : specs_in(results))
-    out << "<a href=\"#" << html_text(name) << "\">" << html_text(name) << "</a>";
-  out << "</nav>\n";
-  for (const std::string& name : specs_in(results)) html_spec(out, results, name);
-  html_provenance(out, results);
+         "content=\"width=device-width, initial-scale=1\"><title>Carve: results</title><link rel=\"icon\" "
+         "href=\"data:,\"><style>"
+      << carve_style_begin << "</style></head><body>\n<h1>Carve: results</h1>\n<nav><ul>";
+  std::vector<std::pair<std::string, Results>> specs;
+  for (const std::string& name : specs_in(results)) specs.emplace_back(name, load_results(results / name));
+  const std::vector<PublishedTable> published = published_tables(options.published, results);
+  out << "<li><a href=\"#meshes\">Meshes in 3-D</a></li>";
+  for (const auto& [name, found] : specs)
+    out << "<li><a href=\"#" << html_text(name) << "\">" << html_text(found.overview.title) << "</a></li>";
+  if (!published.empty()) out << "<li><a href=\"#published\">Published and measured</a></li>";
+  out << "<li><a href=\"#provenance\">Where the figures come from</a></li></ul></nav>\n"
+      << viewer_html(results, options.three, options.mesh_megabytes);
+  for (const auto& [name, found] : specs) html_spec(out, results, name, found);
+  if (!published.empty()) out << "<section><h2 id=\"published\">Published and measured</h2>\n";
+  for (const PublishedTable& table : published) {
+    out << "<h3>" << html_text(table.title) << "</h3>\n" << html(table.table) << "<ul class=\"note\">";
+    for (const std::string& note : table.notes) out << "<li>" << html_text(note) << "</li>";
+    out << "</ul>\n";
+  }
+  if (!published.empty()) out << "</section>\n";
+  html_provenance(out, specs);
   out << "</body></html>\n";
   return out.str();
 }
 
-std::string markdown_report(const fs::path& results) {
+std::string markdown_report(const fs::path& results, const ReportOptions& options) {
   std::ostringstream out;
   out.imbue(std::locale::classic());
   out << "# Results\n\n";
   for (const std::string& name : specs_in(results)) {
     const fs::path folder = results / name;
     const Results found = load_results(folder);
-    out << "## " << found.overview.title << "\n\n";
+    out << "## " << found.overview.title << "\n\n"
+        << markdown(summary(found.overview, found.records)) << "\n"
+        << kSummaryNote << "\n\n";
     for (const RunMetric& metric : found.overview.metrics)
       out << to_markdown(make_table(found.overview, found.records, metric)) << "\n";
-    for (const char* part : {"plots", "heat_maps"})
+    for (const char* part : {"plots", "heat_maps", "renders"})
       for (const fs::path& file : files_in(folder / part, ".png"))
-        out << "![" << file.stem().string() << "](" << name << "/" << part << "/" << file.filename().string()
-            << ")\n\n";
+        out << "![" << file.stem().string() << "](<" << name << "/" << part << "/" << file.filename().string()
+            << ">)\n\n";
+  }
+  for (const PublishedTable& table : published_tables(options.published, results)) {
+    out << "## " << table.title << "\n\n" << markdown(table.table) << "\n";
+    for (const std::string& note : table.notes) out << "- " << note << "\n";
+    out << "\n";
   }
   return out.str();
 }

@@ -4,11 +4,18 @@
 
 namespace carve::experiments {
 
-/// One self-contained HTML page of all results below a folder: per spec its tables, figures (plots/*.svg) and heat maps
-/// (heat_maps/*.png), embedded; readable offline, on a phone and in print. Reads files in `results` only.
-std::string html_report(const std::filesystem::path& results);
+struct ReportOptions {
+  std::filesystem::path published;  // folder of the thesis's tables (papers/published); empty: leave them out
+  std::filesystem::path three;      // folder of three.js, for the 3-D view
+  double mesh_megabytes = 10;       // of the page, for the 3-D view
+};
 
-/// The same as Markdown, with links to the pictures.
-std::string markdown_report(const std::filesystem::path& results);
+/// One self-contained HTML page of all results below a folder: a rotatable view of every run's mesh; per spec its
+/// summary, tables, figures (plots/*.svg), heat maps and renders (*.png, as WebP), embedded; published tables beside
+/// measured ones. Readable offline, on a phone and in print.
+std::string html_report(const std::filesystem::path& results, const ReportOptions& options);
+
+/// The same as Markdown, with links to the pictures and without the view.
+std::string markdown_report(const std::filesystem::path& results, const ReportOptions& options);
 
 }  // namespace carve::experiments

@@ -14,18 +14,11 @@ namespace bp = boost::process;
 namespace fs = std::filesystem;
 namespace {
 
-std::string plain(double value) {
-  if (!std::isfinite(value)) return "NaN";
-  char buffer[32];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
-}
-
 // What gnuplot prints as it stands inside double quotes.
 std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') out += '\\';
-    if (c == '_' || c == '^' || c == '@' || c == '{' || c == '}') out += "\\\\";  // enhanced text would interpret them
     out += c;
   }
   return out + "\"";
@@ -37,11 +30,14 @@ bool is_number(const std::string& text) {
          !text.empty();
 }
 
+// Wider tables than this are drawn as dots, a line a row: bars would be too thin to tell apart.
+constexpr std::size_t kMostBars = 36;
+
 struct Data {
   std::vector<std::string> x;          // swept values or models
   std::vector<std::vector<double>> y;  // [x][method], NaN where there is none
   std::string x_name;
-  bool lines = false, log_x = false;
+  bool lines = false, dots = false, log_x = false;
 };
 
 // Per value of the first swept field, the mean over the rows that every method has.
@@ -77,66 +73,109 @@ Data model_data(const Overview& overview, const std::vector<Record>& records, co
     data.y.emplace_back();
     for (const Table::Entry& entry : row.entries) data.y.back().push_back(entry.value.value_or(std::nan("")));
   }
+  data.dots = data.x.size() * overview.methods.size() > kMostBars;
   return data;
 }
 
 std::string csv_of(const Data& data, const Overview& overview) {
   std::string text = data.x_name.empty() ? "model" : data.x_name;
-  for (const std::string& method : overview.methods) text += "," + method;
+  for (const std::string& method : overview.methods) text += "," + csv_text(method);
   text += "\n";
   for (std::size_t i = 0; i < data.x.size(); ++i) {
-    std::string label = data.x[i];
-    std::replace(label.begin(), label.end(), ',', ';');
-    text += label;
-    for (const double y : data.y[i]) text += "," + plain(y);
+    text += csv_text(data.x[i]);
+    for (const double y : data.y[i]) text += "," + exact_text(y, "NaN");
     text += "\n";
   }
   return text;
 }
 
-std::string script_of(const Data& data, const Overview& overview, const RunMetric& metric, const std::string& name) {
+struct Size {
+  std::size_t width = 640, height = 400;
+};
+
+Size size_of(const Data& data, const Overview& overview) {
+  const std::size_t keys = 22 * ((overview.methods.size() + 2) / 3);
+  if (!data.dots) return {640, 380 + keys};
+  return {640, 70 + keys + data.x.size() * std::max<std::size_t>(15, 4 * overview.methods.size())};
+}
+
+std::string axis_of(const RunMetric& metric) {
+  return metric.name + (metric.unit.empty() ? "" : " (" + metric.unit + ")");
+}
+
+double largest_over_smallest(const Data& data) {
+  double low = INFINITY, high = 0;
+  for (const auto& row : data.y)
+    for (const double y : row)
+      if (y > 0) low = std::min(low, y), high = std::max(high, y);
+  return high / low;
+}
+
+// Axes of lines over a swept field, of bars, or of dots.
+std::string axes_of(const Data& data, const RunMetric& metric) {
   std::ostringstream out;
-  const std::size_t wide =
-      data.lines ? 800 : std::clamp<std::size_t>(300 + data.x.size() * (overview.methods.size() * 9 + 22), 800, 2600);
-  out << "# gnuplot " << name << ".gnuplot   redraws the figure from " << name << ".csv\n"
-      << "set datafile separator ','\nset datafile missing 'NaN'\n"
-      << "set title " << quoted(overview.title) << "\nset ylabel "
-      << quoted(metric.name + (metric.unit.empty() ? "" : " (" + metric.unit + ")"))
-      << "\nset key outside below horizontal\nset grid ytics lc rgb '#cccccc'\nset border 3\nset tics nomirror\n"
-      // Okabe and Ito's colours: told apart by colour-blind readers, and by shape and dash on grey paper.
-      << "array colour[8] = ['#0072B2', '#D55E00', '#009E73', '#CC79A7', '#E69F00', '#56B4E9', '#000000', '#999999']\n";
-  const auto colour = [](std::size_t i) { return "rgb colour[" + std::to_string(i % 8 + 1) + "]"; };
+  const char value_axis = data.dots ? 'x' : 'y';
+  out << "set " << value_axis << "label " << quoted(axis_of(metric)) << "\nset grid " << value_axis
+      << "tics lc rgb '#d8d8d8'\n";
+  if (data.lines || metric.better == Direction::lower) {
+    if (metric.unit == "s" && largest_over_smallest(data) > 20)
+      out << "set logscale " << value_axis << "\nset format " << value_axis << " '%g'\n";
+    else if (metric.better == Direction::lower)
+      out << "set " << value_axis << "range [0:*]\n";
+  }
   if (data.lines) {
-    out << "set xlabel " << quoted(data.x_name) << "\n";
-    if (data.log_x) out << "set logscale x 2\n";
-    double low = INFINITY, high = 0;
-    for (const auto& row : data.y)
-      for (const double y : row)
-        if (y > 0) low = std::min(low, y), high = std::max(high, y);
-    if (high / low > 50) out << "set logscale y\nset format y '10^{%L}'\n";
-    out << "set xtics (";
+    out << "set xlabel " << quoted(data.x_name) << "\n" << (data.log_x ? "set logscale x 2\n" : "") << "set xtics (";
     for (std::size_t i = 0; i < data.x.size(); ++i) out << (i ? ", " : "") << data.x[i];
     out << ")\n";
+  } else if (data.dots) {
+    out << "set yrange [" << data.x.size() << " - 0.5:-0.5]\nset ytics font ',9'\nset grid ytics lc rgb '#eeeeee'\n";
   } else {
-    out << "set style data histogram\nset style histogram clustered gap 1\nset style fill solid 0.9 border -1\n"
-        << "set xtics rotate by -40 font ',9'\n";
-    if (metric.better == Direction::lower) out << "set yrange [0:*]\n";
+    out << "set style data histogram\nset style histogram clustered gap 1\nset style fill solid 1 border -1\n"
+        << "set xtics rotate by -35 font ',10'\n";
   }
-  out << "do for [k = 1:3] {\n  if (k == 1) { set terminal svg size " << wide << ",480 font 'sans,12'; set output '"
-      << name << ".svg' }\n"
-      << "  if (k == 2) { set terminal pdfcairo size " << wide / 100.0 << ",4.8 font 'sans,12'; set output '" << name
-      << ".pdf' }\n"
-      << "  if (k == 3) { set terminal pngcairo size " << wide << ",480 font 'sans,12'; set output '" << name
-      << ".png' }\n  plot ";
-  for (std::size_t m = 0; m < overview.methods.size(); ++m) {
+  return out.str();
+}
+
+std::string curves_of(const Data& data, const Overview& overview, const std::string& name) {
+  std::ostringstream out;
+  const std::size_t count = overview.methods.size();
+  std::size_t coloured = 0;
+  for (std::size_t m = 0; m < count; ++m) {
+    const bool base = overview.methods[m] == overview.baseline;
+    const std::string colour = base ? "rgb '#8c8c8c'" : "rgb colour[" + std::to_string(coloured++ % 7 + 1) + "]";
     out << (m ? ", \\\n    " : "") << (m ? "''" : "'" + name + ".csv'") << " skip 1 using ";
     if (data.lines)
-      out << "1:" << m + 2 << " with linespoints lw 2 pt " << m % 7 + 4 << " dt " << m % 5 + 1 << " lc " << colour(m);
+      out << "1:" << m + 2 << " with linespoints lw 2 pt " << m % 7 + 4 << " dt " << m % 5 + 1 << " lc " << colour;
+    else if (data.dots)
+      out << m + 2 << ":($0 + "
+          << (static_cast<double>(m) - (static_cast<double>(count) - 1) / 2) * 0.6 / static_cast<double>(count)
+          << "):ytic(1) with points pt " << m % 7 + 4 << " ps 0.9 lw 1.5 lc " << colour;
     else
-      out << m + 2 << ":xtic(1) lc " << colour(m);
+      out << m + 2 << ":xtic(1) lc " << colour;
     out << " title " << quoted(overview.methods[m]);
   }
-  out << "\n}\nset output\n";
+  return out.str();
+}
+
+std::string script_of(const Data& data, const Overview& overview, const RunMetric& metric, const std::string& name) {
+  std::ostringstream out;
+  const Size size = size_of(data, overview);
+  out << "# " << overview.title << "\n# gnuplot " << name << ".gnuplot   redraws the figure from " << name << ".csv\n"
+      << "set datafile separator ','\nset datafile missing 'NaN'\n"
+      << "set key outside below horizontal\nset border 3\nset tics nomirror\n"
+      // Okabe and Ito's colours: told apart by colour-blind readers, and by shape and dash on grey paper. The baseline
+      // is grey.
+      << "array colour[7] = ['#0072B2', '#D55E00', '#009E73', '#CC79A7', '#E69F00', '#56B4E9', '#000000']\n"
+      << axes_of(data, metric) << "do for [k = 1:3] {\n";
+  const auto terminal = [&](int k, const char* kind, const std::string& dimensions, const char* ending) {
+    out << "  if (k == " << k << ") { set terminal " << kind << " noenhanced size " << dimensions
+        << " font 'sans,12'; set output '" << name << ending << "' }\n";
+  };
+  const std::string pixels = std::to_string(size.width) + "," + std::to_string(size.height);
+  terminal(1, "svg", pixels, ".svg");
+  terminal(2, "pdfcairo", exact_text(size.width / 100.0) + "," + exact_text(size.height / 100.0), ".pdf");
+  terminal(3, "pngcairo", pixels, ".png");
+  out << "  plot " << curves_of(data, overview, name) << "\n}\nset output\n";
   return out.str();
 }
 

@@ -3,41 +3,18 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <functional>
 #include <set>
 #include <sstream>
 
 namespace carve::experiments {
 namespace {
 
-std::string exact_text(double value) {
-  if (!std::isfinite(value)) return "";
-  char buffer[32];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
-}
-
 std::string row_label(const Record& record) {
   return record.swept.empty() ? record.model : record.model + ", " + text_of(record.swept);
 }
 
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
-
-std::string latex_text(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (std::string("_%&#$").find(c) != std::string::npos) out += '\\';
-    out += c;
-  }
-  return out;
-}
-
-// Rows in the order of models, then of the records' own paths with numbers in numeric order.
-std::vector<std::string> row_order(const Overview& overview, const std::vector<Record>& records) {
+// Rows in the order of models, then of the swept values with numbers in numeric order.
+std::vector<const Record*> sorted_by_row(const Overview& overview, const std::vector<Record>& records) {
   const auto place = [&](const std::string& model) {
     return std::find(overview.models.begin(), overview.models.end(), model) - overview.models.begin();
   };
@@ -57,11 +34,23 @@ std::vector<std::string> row_order(const Overview& overview, const std::vector<R
     }
     return false;
   });
+  return sorted;
+}
+
+template <class Label>
+std::vector<std::string> labels_of(const std::vector<const Record*>& records, Label&& label_of) {
   std::vector<std::string> labels;
-  for (const Record* record : sorted)
-    if (const std::string label = row_label(*record); std::find(labels.begin(), labels.end(), label) == labels.end())
+  for (const Record* record : records)
+    if (const std::string label = label_of(*record); std::find(labels.begin(), labels.end(), label) == labels.end())
       labels.push_back(label);
   return labels;
+}
+
+// The combinations of swept values that there are, as text.
+std::vector<std::string> swept_values(const Overview& overview, const std::vector<Record>& records) {
+  Overview any_model = overview;
+  any_model.models.clear();
+  return labels_of(sorted_by_row(any_model, records), [](const Record& r) { return text_of(r.swept); });
 }
 
 Table::Entry entry_of(const std::vector<Record>& records, const std::string& row, const std::string& method,
@@ -120,38 +109,6 @@ std::string difference_text(const PairedDifference& d, Direction better) {
          " better, " + std::to_string(losses) + " worse, p = " + short_text(d.p);
 }
 
-using Style = std::function<std::string(const std::string&)>;
-
-// Rows of text: the body and the two summary rows, the best of each row through `bold`.
-std::vector<std::vector<std::string>> text_rows(const Table& table, const Style& escape, const Style& bold) {
-  std::vector<std::vector<std::string>> rows;
-  for (const Table::Row& row : table.rows) {
-    const std::set<std::size_t> best = best_of(table, row);
-    rows.push_back({escape(row.label)});
-    for (std::size_t c = 0; c < row.entries.size(); ++c) {
-      const std::string text = row.entries[c].value ? short_text(*row.entries[c].value) : "–";
-      rows.back().push_back(best.contains(c) ? bold(text) : text);
-    }
-  }
-  for (const bool is_mean : {true, false}) {
-    Table::Row row{(is_mean ? "mean of " : "median of ") + std::to_string(table.complete_rows), {}};
-    for (const Table::Summary& s : table.summaries) row.entries.push_back({is_mean ? s.mean : s.median, ""});
-    const std::set<std::size_t> best = best_of(table, row);
-    rows.push_back({row.label});
-    for (std::size_t c = 0; c < row.entries.size(); ++c) {
-      const std::string text = short_text(*row.entries[c].value);
-      rows.back().push_back(best.contains(c) ? bold(text) : text);
-    }
-  }
-  return rows;
-}
-
-std::string joined(const std::vector<std::string>& parts, const std::string& between) {
-  std::string all;
-  for (std::size_t i = 0; i < parts.size(); ++i) all += (i ? between : "") + parts[i];
-  return all;
-}
-
 // Differences from the baseline, and why entries are missing.
 std::vector<std::string> notes_of(const Table& table) {
   std::vector<std::string> notes;
@@ -166,39 +123,56 @@ std::vector<std::string> notes_of(const Table& table) {
   return notes;
 }
 
-std::string legend(const RunMetric& metric) {
-  const char* better = metric.better == Direction::lower    ? "lower is better"
-                       : metric.better == Direction::higher ? "higher is better"
-                                                            : "";
-  return metric.name + (metric.unit.empty() ? "" : " (" + metric.unit + ")") + ": " + metric.formula +
-         (*better ? "; " : "") + better;
+// " (+12 %)"; nothing where a share means nothing.
+std::string change_text(double value, double base) {
+  if (!std::isfinite(value) || !std::isfinite(base) || base == 0) return "";
+  const double percent = 100 * (value / base - 1);
+  char text[32];
+  std::snprintf(text, sizeof text, std::abs(percent) < 9.95 ? " (%+.1f\u00a0%%)" : " (%+.0f\u00a0%%)", percent);
+  return text;
+}
+
+// Means of a table's columns and their changes from the baseline's.
+std::vector<TextTable::Entry> summary_column(const Table& table) {
+  Table::Row means{"", {}};
+  for (const Table::Summary& column : table.summaries) means.entries.push_back({column.mean, ""});
+  const std::set<std::size_t> best = best_of(table, means);
+  const auto base = std::find(table.columns.begin(), table.columns.end(), table.baseline) - table.columns.begin();
+  std::vector<TextTable::Entry> column;
+  for (std::size_t m = 0; m < table.columns.size(); ++m) {
+    const double value = table.summaries[m].mean;
+    std::string entry = std::isfinite(value) ? short_text(value) : "–";
+    if (base < std::ssize(table.columns) && base != static_cast<std::ptrdiff_t>(m))
+      entry += change_text(value, table.summaries[base].mean);
+    column.push_back({entry, best.contains(m)});
+  }
+  return column;
+}
+
+// The body and the two summary rows.
+TextTable body_of(const Table& table) {
+  TextTable text{{""}, {}, table.rows.size()};
+  text.header.insert(text.header.end(), table.columns.begin(), table.columns.end());
+  const auto add = [&](const Table::Row& row) {
+    const std::set<std::size_t> best = best_of(table, row);
+    text.rows.push_back({{row.label, false}});
+    for (std::size_t c = 0; c < row.entries.size(); ++c)
+      text.rows.back().push_back({row.entries[c].value ? short_text(*row.entries[c].value) : "–", best.contains(c)});
+  };
+  for (const Table::Row& row : table.rows) add(row);
+  for (const bool is_mean : {true, false}) {
+    Table::Row row{(is_mean ? "mean of " : "median of ") + std::to_string(table.complete_rows), {}};
+    for (const Table::Summary& s : table.summaries) row.entries.push_back({is_mean ? s.mean : s.median, ""});
+    add(row);
+  }
+  return text;
 }
 
 }  // namespace
 
-std::string short_text(double value) {
-  if (!std::isfinite(value)) return "-";
-  char buffer[48];
-  const double size = std::abs(value);
-  const bool plain = size == 0 || (size >= 1e-4 && size < 1e7);
-  const int decimals = size >= 1000 ? 0
-                       : size == 0  ? 0
-                                    : std::max(0, 3 - static_cast<int>(std::floor(std::log10(size))));
-  const auto end = plain ? std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed, decimals)
-                         : std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::scientific, 2);
-  return {buffer, end.ptr};
-}
-
-std::string html_text(const std::string& text) {
-  std::string out;
-  for (const char c : text)
-    out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c);
-  return out;
-}
-
 Table make_table(const Overview& overview, const std::vector<Record>& records, const RunMetric& metric) {
   Table table{metric, overview.title, overview.baseline, overview.methods, {}, {}, 0};
-  for (const std::string& label : row_order(overview, records)) {
+  for (const std::string& label : labels_of(sorted_by_row(overview, records), row_label)) {
     Table::Row row{label, {}};
     for (const std::string& method : overview.methods)
       row.entries.push_back(entry_of(records, label, method, metric.name));
@@ -209,46 +183,54 @@ Table make_table(const Overview& overview, const std::vector<Record>& records, c
 }
 
 std::string to_markdown(const Table& table) {
-  std::ostringstream out;
-  out << "**" << table.title << "** — " << legend(table.metric) << "\n\n| | " << joined(table.columns, " | ")
-      << " |\n|---|";
-  for (std::size_t c = 0; c < table.columns.size(); ++c) out << "---:|";
-  out << "\n";
-  const auto rows = text_rows(
-      table, [](const std::string& t) { return t; }, [](const std::string& t) { return "**" + t + "**"; });
-  for (const auto& row : rows) out << "| " << joined(row, " | ") << " |\n";
-  out << "\n";
-  for (const std::string& note : notes_of(table)) out << "- " << note << "\n";
-  return out.str();
+  std::string out = "**" + table.title + "** — " + legend(table.metric) + "\n\n" + markdown(body_of(table)) + "\n";
+  for (const std::string& note : notes_of(table)) out += "- " + note + "\n";
+  return out;
 }
 
 std::string to_html(const Table& table) {
-  std::ostringstream out;
-  out << "<h3>" << html_text(table.metric.name) << "</h3><p class=\"note\">" << html_text(legend(table.metric))
-      << "</p><div class=\"wide\"><table><tr><th></th>";
-  for (const std::string& column : table.columns) out << "<th>" << html_text(column) << "</th>";
-  out << "</tr>\n";
-  constexpr char kBest = '\1';  // cannot stand in a name
-  const auto rows = text_rows(table, html_text, [](const std::string& t) { return kBest + t; });
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    out << (i == table.rows.size() ? "<tr class=\"summary\">" : "<tr>");
-    for (const std::string& text : rows[i])
-      out << (text.starts_with(kBest) ? "<td class=\"best\">" + text.substr(1) : "<td>" + text) << "</td>";
-    out << "</tr>\n";
+  std::string out = html(body_of(table)) + "<ul class=\"note\">";
+  for (const std::string& note : notes_of(table)) out += "<li>" + html_text(note) + "</li>";
+  return out + "</ul>\n";
+}
+
+std::string legend(const RunMetric& metric) {
+  const char* better = metric.better == Direction::lower    ? "lower is better"
+                       : metric.better == Direction::higher ? "higher is better"
+                                                            : "";
+  return metric.name + (metric.unit.empty() ? "" : " (" + metric.unit + ")") + ": " + metric.formula +
+         (*better ? "; " : "") + better;
+}
+
+TextTable summary(const Overview& overview, const std::vector<Record>& records) {
+  TextTable text{{"method"}, {}};
+  for (const RunMetric& metric : overview.metrics) {
+    const std::string unit = metric.unit == "% of the diagonal" ? ", %" : metric.unit.empty() ? "" : ", " + metric.unit;
+    const char* arrow = metric.better == Direction::lower ? " ↓" : metric.better == Direction::higher ? " ↑" : "";
+    text.header.push_back(metric.name + unit + arrow);
   }
-  out << "</table></div><ul class=\"note\">";
-  for (const std::string& note : notes_of(table)) out << "<li>" << html_text(note) << "</li>";
-  out << "</ul>\n";
-  return out.str();
+  for (const std::string& swept : swept_values(overview, records)) {
+    std::vector<Record> part;
+    std::copy_if(records.begin(), records.end(), std::back_inserter(part),
+                 [&](const Record& r) { return text_of(r.swept) == swept; });
+    const std::size_t first = text.rows.size();
+    for (const std::string& method : overview.methods)
+      text.rows.push_back({{method + (swept.empty() ? "" : ", " + swept), false}});
+    for (const RunMetric& metric : overview.metrics) {
+      const std::vector<TextTable::Entry> column = summary_column(make_table(overview, part, metric));
+      for (std::size_t m = 0; m < column.size(); ++m) text.rows[first + m].push_back(column[m]);
+    }
+  }
+  return text;
 }
 
 std::string to_csv(const Table& table) {
   std::ostringstream out;
   out << "row";
-  for (const std::string& column : table.columns) out << "," << quoted(column);
+  for (const std::string& column : table.columns) out << "," << csv_text(column);
   out << "\n";
   for (const Table::Row& row : table.rows) {
-    out << quoted(row.label);
+    out << csv_text(row.label);
     for (const Table::Entry& entry : row.entries) out << "," << (entry.value ? exact_text(*entry.value) : "");
     out << "\n";
   }
@@ -256,29 +238,15 @@ std::string to_csv(const Table& table) {
 }
 
 std::string to_latex(const Table& table) {
-  std::ostringstream out;
-  out << "% " << table.title << "; " << legend(table.metric) << "\n\\begin{tabular}{l"
-      << std::string(table.columns.size(), 'r') << "}\n\\toprule\n";
-  for (const std::string& column : table.columns) out << " & " << latex_text(column);
-  out << " \\\\\n\\midrule\n";
-  const auto rows = text_rows(table, latex_text, [](const std::string& t) { return "\\textbf{" + t + "}"; });
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (i == table.rows.size()) out << "\\midrule\n";
-    std::string line = joined(rows[i], " & ");
-    for (std::size_t dash; (dash = line.find("–")) != std::string::npos;)
-      line.replace(dash, std::string("–").size(), "--");
-    out << line << " \\\\\n";
-  }
-  out << "\\bottomrule\n\\end{tabular}\n";
-  return out.str();
+  return "% " + table.title + "; " + legend(table.metric) + "\n" + latex(body_of(table));
 }
 
 std::string long_csv(const std::vector<Record>& records) {
   std::ostringstream out;
   out << "spec,model,method,swept,seed,status,metric,value\n";
   for (const Record& r : records) {
-    const std::string key = quoted(r.spec) + "," + quoted(r.model) + "," + quoted(r.method) + "," +
-                            quoted(text_of(r.swept)) + "," + std::to_string(r.seed) + "," + quoted(r.status) + ",";
+    const std::string key = csv_text(r.spec) + "," + csv_text(r.model) + "," + csv_text(r.method) + "," +
+                            csv_text(text_of(r.swept)) + "," + std::to_string(r.seed) + "," + csv_text(r.status) + ",";
     if (r.metrics.empty()) out << key << ",\n";
     for (const auto& [name, value] : r.metrics) out << key << name << "," << exact_text(value) << "\n";
   }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "report/statistics.h"
+#include "report/text_table.h"
 #include "store/record.h"
 
 namespace carve::experiments {
@@ -35,15 +36,14 @@ Table make_table(const Overview& overview, const std::vector<Record>& records, c
 /// Best entry of a row in bold, missing ones as a dash with the reason below the table, the metric's definition above
 /// it.
 std::string to_markdown(const Table& table);
-std::string to_html(const Table& table);  // the same, for html_report
+std::string to_html(const Table& table);  // the same without the definition, for html_report
 std::string to_csv(const Table& table);
-std::string to_latex(const Table& table);  // booktabs
+std::string to_latex(const Table& table);     // booktabs
+std::string legend(const RunMetric& metric);  // name (unit): formula; which is better
 
-/// Four significant digits, C locale; "-" for what is not finite.
-std::string short_text(double value);
-
-/// Text as it may stand in an HTML element or attribute.
-std::string html_text(const std::string& text);
+/// The table of an ablation: a row a method, a column a metric, means over the rows that every method has, the best of
+/// a column in bold; behind them in brackets the change from the baseline in %.
+TextTable summary(const Overview& overview, const std::vector<Record>& records);
 
 /// Every run and metric in one long table: spec, model, method, swept fields, seed, status, metric, value.
 std::string long_csv(const std::vector<Record>& records);

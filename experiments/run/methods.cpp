@@ -7,16 +7,9 @@
 namespace carve::experiments {
 namespace {
 
-std::map<View, Drawing> understand(const MethodInput& input) {
-  std::map<View, Drawing> drawings;
-  for (const auto& [view, picture] : input.pictures)
-    drawings.emplace(view, understand_drawing(picture, input.options.pipeline.drawing));
-  return drawings;
-}
-
 // The library's way, with all its options: every variant that options can state.
 MethodOutput carve_arm(const MethodInput& input) {
-  Reconstruction result = reconstruct(understand(input), input.options.pipeline);
+  Reconstruction result = reconstruct(input.drawings, input.options.pipeline);
   return {std::move(result.mesh), std::move(result.times)};
 }
 

@@ -7,9 +7,10 @@
 
 namespace carve::experiments {
 
-/// What a method is given: the drawings as pictures, as a user would have them.
+/// What a method is given: the drawings as pictures, as a user would have them, and as understood by the library.
 struct MethodInput {
   std::map<View, Picture> pictures;
+  std::map<View, Drawing> drawings;
   RunOptions options;
   unsigned seed = 1;
 };

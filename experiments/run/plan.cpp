@@ -68,6 +68,7 @@ Overview overview(const Spec& spec, const std::vector<Cell>& cells) {
              .heat_map_models = expand_subjects(spec.heat_map_models),
              .metrics = {},
              .heat_map_range = spec.heat_map_range,
+             .published = spec.published,
              .runs = static_cast<int>(cells.size())};
   for (const std::string& name : spec.metrics) o.metrics.push_back(*find_metric(name));
   for (const MethodSpec& method : spec.methods) o.methods.push_back(method.name);

@@ -1,14 +1,20 @@
 #include "run/provenance.h"
 
-#include <tbb/version.h>
+#include <CGAL/version.h>
+#include <gnu/libc-version.h>
+#include <link.h>
+#include <toml++/toml.h>
 #include <unistd.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <boost/process.hpp>
 #include <boost/version.hpp>
 #include <cstdlib>
 #include <ctime>
+#include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "run/hash.h"
@@ -51,6 +57,43 @@ std::string version(int a, int b, int c) {
   return std::to_string(a) + "." + std::to_string(b) + "." + std::to_string(c);
 }
 
+// The shared libraries of this process by the names of their files, which hold their versions: "libtbb.so.12.8".
+std::vector<std::string> loaded_libraries() {
+  std::vector<std::string> names;
+  dl_iterate_phdr(
+      [](dl_phdr_info* info, std::size_t, void* list) {
+        std::error_code error;
+        const auto file = std::filesystem::canonical(info->dlpi_name, error).filename().string();
+        if (!error && file.find(".so") != std::string::npos)
+          static_cast<std::vector<std::string>*>(list)->push_back(file);
+        return 0;
+      },
+      &names);
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+// Those that leave nothing but their headers in the program, then those it loads.
+std::string libraries() {
+  std::string all = "Boost " + version(BOOST_VERSION / 100000, BOOST_VERSION / 100 % 1000, BOOST_VERSION % 100) +
+                    ", CGAL " + CGAL_VERSION_STR + ", Eigen " +
+                    version(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION) + ", nlohmann-json " +
+                    version(NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH) +
+                    ", toml++ " + version(TOML_LIB_MAJOR, TOML_LIB_MINOR, TOML_LIB_PATCH) + ", glibc " +
+                    gnu_get_libc_version();
+  for (const std::string& name : loaded_libraries()) all += ", " + name;
+  return all;
+}
+
+// Other work on the machine's cores when the run began: what its times may be trusted for.
+std::string load() {
+  double minute = 0;
+  if (getloadavg(&minute, 1) != 1) return "unknown";
+  char text[16];
+  std::snprintf(text, sizeof text, "%.1f", minute);
+  return text;
+}
+
 }  // namespace
 
 void export_commit() {
@@ -73,9 +116,8 @@ std::map<std::string, std::string> provenance() {
           {"program", program_hash()},
           {"compiler", "g++ " __VERSION__},
           {"flags", CARVE_BUILD_FLAGS},
-          {"libraries", "Eigen " + version(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION) + ", Boost " +
-                            version(BOOST_VERSION / 100000, BOOST_VERSION / 100 % 1000, BOOST_VERSION % 100) +
-                            ", oneTBB " + version(TBB_VERSION_MAJOR, TBB_VERSION_MINOR, 0)},
+          {"libraries", libraries()},
+          {"load", load()},
           {"cpu", cpu()},
           {"cores", std::to_string(std::thread::hardware_concurrency())},
           {"date", date}};

@@ -55,6 +55,8 @@ class Reader {
       read_limits(node);
     else if (key == "heat_map")
       read_heat_map(node);
+    else if (key == "published")
+      read_published(node);
     else if (key == "method")
       read_methods(node);
     else if (key != "all_minus")
@@ -182,6 +184,22 @@ class Reader {
     }
   }
 
+  void read_published(const toml::node& node) {
+    for (const auto& [key, item] : table(node)) {
+      if (key.str() == "table")
+        spec_.published.table = text(item);
+      else if (key.str() == "method")
+        spec_.published.method = text(item);
+      else if (key.str() == "columns")
+        for (const auto& [column, metric] : table(item)) {
+          spec_.published.columns[std::string(column.str())] = text(metric);
+          if (!find_metric(text(metric))) fail(metric, "unknown metric " + text(metric));
+        }
+      else
+        fail(item, "unknown key published." + std::string(key.str()));
+    }
+  }
+
   void read_methods(const toml::node& node) {
     if (!node.is_array_of_tables()) fail(node, "method must be written as [[method]]");
     for (const toml::node& entry : *node.as_array()) {
@@ -225,9 +243,14 @@ class Reader {
     if (spec_.methods.empty()) throw IoError(path_.string(), "needs at least one [[method]] or all_minus");
     if (spec_.models.empty()) throw IoError(path_.string(), "needs models");
     if (spec_.title.empty()) spec_.title = spec_.name;
-    const auto named = [&](const MethodSpec& m) { return m.name == spec_.baseline; };
-    if (!spec_.baseline.empty() && std::none_of(spec_.methods.begin(), spec_.methods.end(), named))
-      throw IoError(path_.string(), "baseline " + spec_.baseline + " is not one of its methods");
+    check_method(spec_.baseline, "baseline");
+    check_method(spec_.published.method, "published.method");
+  }
+
+  void check_method(const std::string& name, const std::string& key) const {
+    const auto named = [&](const MethodSpec& m) { return m.name == name; };
+    if (!name.empty() && std::none_of(spec_.methods.begin(), spec_.methods.end(), named))
+      throw IoError(path_.string(), key + " " + name + " is not one of its methods");
   }
 
   std::filesystem::path path_;

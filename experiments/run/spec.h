@@ -27,6 +27,8 @@ struct MethodSpec {
 ///   all_minus = ["intersections", "smooth.steps"]         # adds "all" and "all - FIELD" with that field switched off
 ///   limits   = { seconds = 120, megabytes = 4000 }        # of one run
 ///   heat_map = { models = ["dog"], range = 2.0 }          # % of the diagonal
+///   published = { table = "table_4_3", method = "ours", columns = { total = "seconds" } }  # papers/published, column
+///   -> metric
 ///   [[method]]
 ///   name = "hull"
 ///   options = { consistency = "none", smooth = { steps = 0 } }
@@ -40,6 +42,7 @@ struct Spec {
   std::vector<std::pair<std::string, std::vector<std::string>>> sweep;
   std::vector<unsigned> seeds = {1};
   double seconds = 300, megabytes = 6000, heat_map_range = 2;
+  Published published = {};
 };
 
 /// \throws IoError "file:line: ..." on a key that is not known, a value out of its range, or a method named twice

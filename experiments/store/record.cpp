@@ -14,19 +14,84 @@ namespace {
 
 constexpr const char* kDirections[] = {"lower", "higher", "none"};
 
-Json json_of(const RunMetric& m) {
-  return {
-      {"name", m.name}, {"formula", m.formula}, {"unit", m.unit}, {"better", kDirections[static_cast<int>(m.better)]}};
+// The fields of each file, for its writer and its reader.
+template <class R, class Visitor>
+requires std::is_same_v<std::remove_const_t<R>, Record>
+void visit(R& r, Visitor&& field) {
+  field("id", r.id);
+  field("status", r.status);
+  field("spec", r.spec);
+  field("model", r.model);
+  field("method", r.method);
+  field("arm", r.arm);
+  field("seed", r.seed);
+  field("swept", r.swept);
+  field("settings", r.settings);
+  field("metrics", r.metrics);
+  field("provenance", r.provenance);
 }
 
-RunMetric metric_from(const Json& json) {
-  const auto direction =
-      std::find(std::begin(kDirections), std::end(kDirections), json.at("better").get<std::string>());
-  return {json.at("name"), json.at("formula"), json.at("unit"),
-          direction == std::end(kDirections) ? Direction::none : static_cast<Direction>(direction - kDirections)};
+template <class O, class Visitor>
+requires std::is_same_v<std::remove_const_t<O>, Overview>
+void visit(O& o, Visitor&& field) {
+  field("spec", o.spec);
+  field("title", o.title);
+  field("baseline", o.baseline);
+  field("models", o.models);
+  field("methods", o.methods);
+  field("metrics", o.metrics);
+  field("sweep", o.sweep);
+  field("runs", o.runs);
+  field("heat_map_models", o.heat_map_models);
+  field("heat_map_range", o.heat_map_range);
+  field("published", o.published.table);
+  field("published_method", o.published.method);
+  field("published_columns", o.published.columns);
+}
+
+template <class T>
+std::string written(const T& value) {
+  Json json;
+  visit(value, [&](const char* name, const auto& field) { json[name] = field; });
+  return json.dump(1) + "\n";
+}
+
+void read_field(const Json& json, std::map<std::string, double>& values) {
+  for (const auto& [name, value] : json.items())
+    if (value.is_number()) values[name] = value;  // null: a metric that has no value here
+}
+
+template <class T>
+void read_field(const Json& json, T& value) {
+  json.get_to(value);
+}
+
+template <class T>
+T read(const std::string& text, const std::string& path, const char* what) {
+  try {
+    const Json json = Json::parse(text);
+    T value;
+    visit(value, [&](const char* name, auto& field) { read_field(json.at(name), field); });
+    return value;
+  } catch (const nlohmann::json::exception& error) {
+    throw IoError(path, "not " + std::string(what) + ": " + error.what());
+  }
 }
 
 }  // namespace
+
+// Found by the JSON library, by these names.
+static void to_json(Json& json, const RunMetric& m) {
+  json = {
+      {"name", m.name}, {"formula", m.formula}, {"unit", m.unit}, {"better", kDirections[static_cast<int>(m.better)]}};
+}
+
+static void from_json(const Json& json, RunMetric& m) {
+  const auto direction =
+      std::find(std::begin(kDirections), std::end(kDirections), json.at("better").get<std::string>());
+  m = {json.at("name"), json.at("formula"), json.at("unit"),
+       direction == std::end(kDirections) ? Direction::none : static_cast<Direction>(direction - kDirections)};
+}
 
 std::string text_of(const Settings& settings) {
   std::string text;
@@ -34,70 +99,15 @@ std::string text_of(const Settings& settings) {
   return text;
 }
 
-std::string to_json(const Record& r) {
-  const Json json = {{"id", r.id},           {"status", r.status},        {"spec", r.spec},
-                     {"model", r.model},     {"method", r.method},        {"arm", r.arm},
-                     {"seed", r.seed},       {"swept", r.swept},          {"settings", r.settings},
-                     {"metrics", r.metrics}, {"provenance", r.provenance}};
-  return json.dump(1) + "\n";
-}
-
-std::string to_json(const Overview& o) {
-  Json metrics = Json::array();
-  for (const RunMetric& metric : o.metrics) metrics.push_back(json_of(metric));
-  const Json json = {{"spec", o.spec},
-                     {"title", o.title},
-                     {"baseline", o.baseline},
-                     {"models", o.models},
-                     {"methods", o.methods},
-                     {"metrics", metrics},
-                     {"sweep", o.sweep},
-                     {"runs", o.runs},
-                     {"heat_map_models", o.heat_map_models},
-                     {"heat_map_range", o.heat_map_range}};
-  return json.dump(1) + "\n";
-}
+std::string to_json(const Record& r) { return written(r); }
+std::string to_json(const Overview& o) { return written(o); }
 
 Record record_from_json(const std::string& text, const std::string& path) {
-  try {
-    const Json json = Json::parse(text);
-    Record r;
-    json.at("id").get_to(r.id);
-    json.at("status").get_to(r.status);
-    json.at("spec").get_to(r.spec);
-    json.at("model").get_to(r.model);
-    json.at("method").get_to(r.method);
-    json.at("arm").get_to(r.arm);
-    json.at("seed").get_to(r.seed);
-    json.at("swept").get_to(r.swept);
-    json.at("settings").get_to(r.settings);
-    for (const auto& [name, value] : json.at("metrics").items())
-      if (value.is_number()) r.metrics[name] = value;  // null: a metric that has no value here
-    json.at("provenance").get_to(r.provenance);
-    return r;
-  } catch (const nlohmann::json::exception& error) {
-    throw IoError(path, std::string("not a run record: ") + error.what());
-  }
+  return read<Record>(text, path, "a run record");
 }
 
 Overview overview_from_json(const std::string& text, const std::string& path) {
-  try {
-    const Json json = Json::parse(text);
-    Overview o;
-    json.at("spec").get_to(o.spec);
-    json.at("title").get_to(o.title);
-    json.at("baseline").get_to(o.baseline);
-    json.at("models").get_to(o.models);
-    json.at("methods").get_to(o.methods);
-    for (const Json& metric : json.at("metrics")) o.metrics.push_back(metric_from(metric));
-    json.at("sweep").get_to(o.sweep);
-    json.at("heat_map_models").get_to(o.heat_map_models);
-    json.at("heat_map_range").get_to(o.heat_map_range);
-    json.at("runs").get_to(o.runs);
-    return o;
-  } catch (const nlohmann::json::exception& error) {
-    throw IoError(path, std::string("not an overview of results: ") + error.what());
-  }
+  return read<Overview>(text, path, "an overview of results");
 }
 
 std::vector<Record> load_records(const fs::path& folder, std::vector<std::string>& complaints) {
@@ -123,10 +133,35 @@ Overview load_overview(const fs::path& folder) {
   return overview_from_json(read_file(file), file.string());
 }
 
+namespace {
+
+void name_stages(Overview& overview, const std::vector<Record>& records) {
+  std::vector<RunMetric> named;
+  const auto known = [&](const std::string& name, const std::vector<RunMetric>& metrics) {
+    return std::any_of(metrics.begin(), metrics.end(), [&](const RunMetric& m) { return m.name == name; });
+  };
+  const std::string_view stage = std::string_view(kEveryStage).substr(0, std::string_view(kEveryStage).size() - 1);
+  for (const RunMetric& metric : overview.metrics) {
+    if (metric.name != kEveryStage) {
+      named.push_back(metric);
+      continue;
+    }
+    for (const Record& record : records)
+      for (const auto& [name, value] : record.metrics)
+        if (name.starts_with(stage) && !known(name, named) && !known(name, overview.metrics))
+          named.push_back({name, "wall time of the stage " + name.substr(stage.size()) + ", one thread", metric.unit,
+                           metric.better});
+  }
+  overview.metrics = std::move(named);
+}
+
+}  // namespace
+
 Results load_results(const fs::path& folder) {
   Results results;
   results.overview = load_overview(folder);
   results.records = load_records(folder, results.complaints);
+  name_stages(results.overview, results.records);
   return results;
 }
 

@@ -20,6 +20,9 @@ struct RunMetric {
   Direction better = Direction::none;
 };
 
+/// A column that stands for the wall time of every stage that any run recorded, whichever stages the methods have.
+inline constexpr const char* kEveryStage = "seconds_*";
+
 /// What a run left in its folder (run.json).
 struct Record {
   std::string id = {}, spec = {}, model = {}, method = {}, arm = {};
@@ -32,15 +35,24 @@ struct Record {
   bool done() const { return status == "done"; }
 };
 
+/// The published table that a spec measures again: papers/published/TABLE.csv, whose rows are our models or methods.
+struct Published {
+  std::string table, method;  // the method whose runs are set beside it, unless the rows are methods
+  Settings columns;           // published column -> our metric
+};
+
 /// What a spec's results are about (overview.json beside its runs), so that tables and plots need nothing else.
 struct Overview {
   std::string spec, title, baseline;
   std::vector<std::string> models, methods, sweep, heat_map_models;  // in the spec's order
   std::vector<RunMetric> metrics;
   double heat_map_range = 2;
+  Published published = {};
   int runs = 0;
 };
 
+inline constexpr const char* kReferences = "references";   // folder below the results
+inline constexpr const char* kReferenceKey = "reference";  // in a record's provenance: the file's name without .ply
 inline constexpr const char* kRecordFile = "run.json";
 inline constexpr const char* kOverviewFile = "overview.json";
 
@@ -54,7 +66,7 @@ Overview overview_from_json(const std::string& json, const std::string& path);
 std::vector<Record> load_records(const std::filesystem::path& folder, std::vector<std::string>& complaints);
 Overview load_overview(const std::filesystem::path& folder);
 
-/// All that a spec's runs left in its folder.
+/// All that a spec's runs left in its folder; kEveryStage has become the stages there are.
 struct Results {
   Overview overview;
   std::vector<Record> records;
