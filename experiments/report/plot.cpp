@@ -89,14 +89,21 @@ std::string csv_of(const Data& data, const Overview& overview) {
   return text;
 }
 
-struct Size {
-  std::size_t width = 640, height = 400;
+struct Layout {
+  std::size_t width = 640, height = 380, key_columns = 1, key_height = 0;
 };
 
-Size size_of(const Data& data, const Overview& overview) {
-  const std::size_t keys = 22 * ((overview.methods.size() + 2) / 3);
-  if (!data.dots) return {640, 380 + keys};
-  return {640, 70 + keys + data.x.size() * std::max<std::size_t>(15, 4 * overview.methods.size())};
+// The key stands above the axes, in as many columns as its longest name leaves room for.
+Layout layout_of(const Data& data, const Overview& overview) {
+  Layout layout;
+  std::size_t longest = 1;
+  for (const std::string& method : overview.methods) longest = std::max(longest, method.size());
+  const std::size_t count = overview.methods.size();
+  layout.key_columns = std::clamp<std::size_t>(layout.width / (9 * longest + 55), 1, count);
+  layout.key_height = 10 + 19 * ((count + layout.key_columns - 1) / layout.key_columns);
+  if (data.dots) layout.height = 70 + data.x.size() * std::max<std::size_t>(15, 4 * count);
+  layout.height += layout.key_height;
+  return layout;
 }
 
 std::string axis_of(const RunMetric& metric) {
@@ -116,22 +123,22 @@ std::string axes_of(const Data& data, const RunMetric& metric) {
   std::ostringstream out;
   const char value_axis = data.dots ? 'x' : 'y';
   out << "set " << value_axis << "label " << quoted(axis_of(metric)) << "\nset grid " << value_axis
-      << "tics lc rgb '#d8d8d8'\n";
-  if (data.lines || metric.better == Direction::lower) {
-    if (metric.unit == "s" && largest_over_smallest(data) > 20)
-      out << "set logscale " << value_axis << "\nset format " << value_axis << " '%g'\n";
-    else if (metric.better == Direction::lower)
-      out << "set " << value_axis << "range [0:*]\n";
-  }
+      << "tics lt 1 lw 0.5 lc rgb '#c8c8c8'\n";
+  if (metric.unit == "s" && largest_over_smallest(data) > 20)
+    out << "set logscale " << value_axis << "\nset format " << value_axis << " '%g'\n";
+  else if (metric.better == Direction::lower || !(data.lines || data.dots))  // bars stand on nothing
+    out << "set " << value_axis << "range [*<0:*]\n";
   if (data.lines) {
     out << "set xlabel " << quoted(data.x_name) << "\n" << (data.log_x ? "set logscale x 2\n" : "") << "set xtics (";
     for (std::size_t i = 0; i < data.x.size(); ++i) out << (i ? ", " : "") << data.x[i];
     out << ")\n";
   } else if (data.dots) {
-    out << "set yrange [" << data.x.size() << " - 0.5:-0.5]\nset ytics font ',9'\nset grid ytics lc rgb '#eeeeee'\n";
+    out << "set yrange [" << data.x.size() << " - 0.5:-0.5]\nset grid ytics\nset ytics font ',9' (";
+    for (std::size_t i = 0; i < data.x.size(); ++i) out << (i ? ", " : "") << quoted(data.x[i]) << " " << i;
+    out << ")\n";
   } else {
     out << "set style data histogram\nset style histogram clustered gap 1\nset style fill solid 1 border -1\n"
-        << "set xtics rotate by -35 font ',10'\n";
+        << "set xtics rotate by -35 font ',10'\nset rmargin 8\n";
   }
   return out.str();
 }
@@ -149,7 +156,7 @@ std::string curves_of(const Data& data, const Overview& overview, const std::str
     else if (data.dots)
       out << m + 2 << ":($0 + "
           << (static_cast<double>(m) - (static_cast<double>(count) - 1) / 2) * 0.6 / static_cast<double>(count)
-          << "):ytic(1) with points pt " << m % 7 + 4 << " ps 0.9 lw 1.5 lc " << colour;
+          << ") with points pt " << m % 7 + 4 << " ps 0.9 lw 1.5 lc " << colour;
     else
       out << m + 2 << ":xtic(1) lc " << colour;
     out << " title " << quoted(overview.methods[m]);
@@ -159,10 +166,13 @@ std::string curves_of(const Data& data, const Overview& overview, const std::str
 
 std::string script_of(const Data& data, const Overview& overview, const RunMetric& metric, const std::string& name) {
   std::ostringstream out;
-  const Size size = size_of(data, overview);
+  const Layout size = layout_of(data, overview);
   out << "# " << overview.title << "\n# gnuplot " << name << ".gnuplot   redraws the figure from " << name << ".csv\n"
       << "set datafile separator ','\nset datafile missing 'NaN'\n"
-      << "set key outside below horizontal\nset border 3\nset tics nomirror\n"
+      << "set key at screen 0.5, screen 1 top center horizontal maxcols " << size.key_columns
+      << "\nset tmargin at screen "
+      << exact_text(1 - static_cast<double>(size.key_height) / static_cast<double>(size.height))
+      << "\nset border 3\nset tics nomirror\n"
       // Okabe and Ito's colours: told apart by colour-blind readers, and by shape and dash on grey paper. The baseline
       // is grey.
       << "array colour[7] = ['#0072B2', '#D55E00', '#009E73', '#CC79A7', '#E69F00', '#56B4E9', '#000000']\n"
