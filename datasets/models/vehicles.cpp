@@ -1,5 +1,7 @@
 // Car and wagon.
 #include <cmath>
+#include <numbers>
+#include <vector>
 
 #include "models/primitives.h"
 #include "models/procedural.h"
@@ -48,7 +50,7 @@ Model car() {
 }
 
 // A tray on four wheels, open at the front, so that its floor's edge is a stroke in the front view; the sides hide the
-// floor from the side.
+// floor from the side. No view shows behind the wheels and below the floor: it is solid there, as far as they hide it.
 Model wagon() {
   Model model;
   add(model, "board", kBoard, box({-0.40, 0.30, -0.70}, {0.40, 0.38, 0.70}));
@@ -56,7 +58,12 @@ Model wagon() {
   add(model, "back", Rgba{206, 164, 110}, box({-0.36, 0.303, -0.704}, {0.36, 0.74, -0.62}));
   for (const double z : {-0.44, 0.44}) {
     add(model, "iron", kIron, cylinder({-0.50, 0.20, z}, {0.50, 0.20, z}, 0.035, 32));
-    add(model, "iron", kIron, box({-0.30, 0.20, z - 0.05}, {0.30, 0.31, z + 0.05}));
+    std::vector<Vec2> behind_wheel;  // (y, z)
+    for (int i = 0; i <= 32; ++i) {
+      const double angle = std::numbers::pi * i / 32;
+      behind_wheel.push_back({0.175 + 0.195 * std::sin(angle), z + 0.198 * std::cos(angle)});
+    }
+    add(model, "iron", kIron, prism(behind_wheel, 0, -0.43, 0.43));
     add_pair(model, "wheel", kRed, cylinder({0.43, 0.20, z}, {0.52, 0.20, z}, 0.20));
     add_pair(model, "hub", kSteel, cylinder({0.44, 0.20, z}, {0.535, 0.20, z}, 0.07, 40));
   }

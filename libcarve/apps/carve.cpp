@@ -110,6 +110,9 @@ Json json_of(const Arguments& arguments, const Reconstruction& result) {
     entry["uncovered"] = fit.uncovered;
     entry["extra"] = fit.extra;
   }
+  Json open_cells = Json::array();
+  for (const OpenCell& cell : result.consistency.open_cells)
+    open_cells.push_back({{"voxels", cell.voxels}, {"kept", cell.kept}, {"low", cell.low}, {"high", cell.high}});
   Json times = Json::object();
   for (const StageTime& time : result.times) times[time.stage] = time.seconds;
   const Topology& t = result.topology;
@@ -124,7 +127,12 @@ Json json_of(const Arguments& arguments, const Reconstruction& result) {
            {{"ran", names(result.consistency.ran)[static_cast<int>(result.consistency.ran)]},
             {"regions", result.consistency.regions},
             {"cells", result.consistency.cells},
-            {"nodes", result.consistency.nodes}}},
+            {"nodes", result.consistency.nodes},
+            {"seconds", result.consistency.seconds},
+            {"in_time", result.consistency.in_time},
+            {"equal_solids", result.consistency.solids},
+            {"all_equal_solids", result.consistency.all_solids},
+            {"open_cells", open_cells}}},
           {"mesh",
            {{"vertices", t.vertices},
             {"triangles", t.triangles},

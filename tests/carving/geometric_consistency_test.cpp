@@ -4,6 +4,8 @@
 
 #include <random>
 
+#include "carve/carving/cell_alternatives.h"
+#include "carve/carving/cell_solver.h"
 #include "carve/core/parallel.h"
 #include "carve/grid/shadow.h"
 #include "carving/box_world.h"
@@ -85,6 +87,73 @@ TEST(Consistency, NodesAreBounded) {
   const ViewSet views = views_of(walled_stairs_world(8), kThreeViews);
   const Carving hull = carve_silhouettes(views, {.grid = 50});
   EXPECT_LE(apply_consistency(hull, views, {.nodes = 100}).nodes, 200);
+}
+
+TEST(Consistency, SolverWithoutNodesFallsBackToOnePassAndSaysSo) {
+  const ViewSet views = views_of(couch(), kThreeViews);
+  const Carving hull = carve_silhouettes(views, {.grid = 40});
+  const ConsistencyResult cut_short = apply_consistency(hull, views, {.nodes = 0});
+  EXPECT_EQ(cut_short.ran, Consistency::two_level);
+  EXPECT_EQ(cut_short.grid, apply_consistency(hull, views, {.arm = Consistency::two_level}).grid);
+  EXPECT_EQ(apply_consistency(hull, views).ran, Consistency::solver);
+}
+
+TEST(Consistency, TheClockEndsASearchOnlyWhereAsked) {
+  const ViewSet views = views_of(walled_stairs_world(8), kThreeViews);
+  const Carving hull = carve_silhouettes(views, {.grid = 50});
+  const ConsistencyResult late = apply_consistency(hull, views, {.seconds = 0});
+  EXPECT_FALSE(late.in_time);
+  EXPECT_LT(late.nodes, apply_consistency(hull, views).nodes);
+  EXPECT_TRUE(apply_consistency(hull, views).in_time);
+}
+
+TEST(Consistency, ABoxIsTheOnlySolidOfItsDrawings) {
+  const ViewSet views = views_of({{4, 5, 6}, {{{0, 0, 0}, {4, 5, 6}}}}, kThreeViews);
+  const ConsistencyResult box = apply_consistency(carve_silhouettes(views, {.grid = 24}), views);
+  EXPECT_EQ(box.solids, 1);
+  EXPECT_TRUE(box.all_solids);
+  EXPECT_TRUE(box.open_cells.empty());
+}
+
+TEST_P(ConsistencyTest, SolidsThatExplainAsMuchAreCounted) {
+  const ViewSet views = views_of(random_pockets(GetParam()), kThreeViews);
+  const Carving hull = carve_silhouettes(views, {.grid = 24});
+  std::vector<RegionMap> regions;
+  for (const AlignedView& view : views.views) regions.push_back(find_regions(view, hull.grid));
+  const Cells cells = partition(hull.grid, regions);
+  if (cells.count > 12) GTEST_SKIP() << "too many to try all";
+  CellProblem problem(cells, hull.grid.size(), regions, {});
+  search_cells(problem, cells, hull.grid.size(), regions, {.nodes = 20000});
+
+  // All choices by their numbers; those that cost no more, as far as single cells lead to them.
+  const std::vector<std::uint8_t> chosen(problem.keep().begin(), problem.keep().end());
+  const std::int64_t most = problem.misfit();
+  const auto choose = [&](unsigned number) {
+    std::vector<int> other;
+    for (int c = 0; c < cells.count; ++c)
+      if (problem.keep()[c] != (number >> c & 1)) other.push_back(c);
+    problem.flip(other);
+  };
+  unsigned first = 0, open = 0;
+  for (int c = 0; c < cells.count; ++c) first |= unsigned{chosen[c]} << c;
+  std::vector<unsigned> found{first};
+  for (std::size_t k = 0; k < found.size(); ++k)
+    for (int c = 0; c < cells.count; ++c) {
+      const unsigned next = found[k] ^ 1u << c;
+      choose(next);
+      if (problem.misfit() > most || std::ranges::count(found, next)) continue;
+      found.push_back(next);
+      open |= next ^ first;
+    }
+  choose(first);
+
+  const Alternatives others = find_alternatives(problem, 1 << 20);
+  EXPECT_TRUE(others.all);
+  EXPECT_EQ(others.solids, static_cast<std::int64_t>(found.size()));
+  unsigned named = 0;
+  for (const int c : others.cells) named |= 1u << c;
+  EXPECT_EQ(named, open);
+  EXPECT_TRUE(std::ranges::equal(problem.keep(), chosen));
 }
 
 TEST(Consistency, OptionsOutOfRangeAreNamed) {

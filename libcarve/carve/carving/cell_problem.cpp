@@ -121,7 +121,8 @@ CellProblem::CellProblem(const Cells& cells, const Vec3i& size, std::span<const 
     c.first = first_of(c);
     set_open(c, 0, std::min(c.first + 1, c.length), 1);
   }
-  for (Group& g : groups_) energy_ += g.value = value_of(g);
+  for (Group& g : groups_) misfit_ += g.value = value_of(g);
+  energy_ += misfit_;
   class_mark_.assign(classes_.size(), 0);
   group_mark_.assign(groups_.size(), 0);
   touch_mark_.assign(cells.count, 0);
@@ -160,6 +161,7 @@ std::int64_t CellProblem::buried_cost(int cell) const {
 std::int64_t CellProblem::flip(std::span<const int> cells) {
   ++stamp_;
   const std::int64_t before = energy_;
+  std::int64_t misfit = 0;
   for (const int c : cells) {
     keep_[c] ^= 1;
     energy_ += keep_[c] ? -volume_cost_[c] : volume_cost_[c];
@@ -176,8 +178,8 @@ std::int64_t CellProblem::flip(std::span<const int> cells) {
       Class& ray = classes_[k];
       const int first = first_of(ray);
       if (first == ray.first) continue;
-      if (ray.first == ray.length) energy_ -= ray.empty;
-      if (first == ray.length) energy_ += ray.empty;
+      if (ray.first == ray.length) misfit -= ray.empty;
+      if (first == ray.length) misfit += ray.empty;
       // A cell is open to a ray as long as nothing is kept before it: up to and with the first kept one.
       const int was = std::min(ray.first + 1, ray.length), now = std::min(first + 1, ray.length);
       if (now > was) set_open(ray, was, now, 1);
@@ -189,9 +191,11 @@ std::int64_t CellProblem::flip(std::span<const int> cells) {
     for (const int g : classes_[k].groups) {
       if (group_mark_[g] == stamp_) continue;
       group_mark_[g] = stamp_;
-      energy_ -= groups_[g].value;
-      energy_ += groups_[g].value = value_of(groups_[g]);
+      misfit -= groups_[g].value;
+      misfit += groups_[g].value = value_of(groups_[g]);
     }
+  energy_ += misfit;
+  misfit_ += misfit;
   for (const int c : cells) touched_.push_back(c);
   for (const int c : touched_) {
     if (touch_mark_[c] == stamp_) continue;

@@ -43,7 +43,8 @@ class CellProblem {
   int cells() const { return static_cast<int>(keep_.size()); }
   std::span<const std::uint8_t> keep() const { return keep_; }
   std::int64_t energy() const { return energy_; }
-  std::int64_t flip(std::span<const int> cells);  // toggles them; the change of energy
+  std::int64_t misfit() const { return misfit_; }  // of it, what the drawings ask for: strokes and silhouettes
+  std::int64_t flip(std::span<const int> cells);   // toggles them; the change of energy
 
  private:
   struct Class {
@@ -84,7 +85,7 @@ class CellProblem {
   std::vector<int> touched_, touch_mark_;
   std::vector<int> class_mark_, group_mark_;
   int stamp_ = 0;
-  std::int64_t energy_ = 0;
+  std::int64_t energy_ = 0, misfit_ = 0;
 };
 
 }  // namespace carve

@@ -58,18 +58,27 @@ class Random {
 
 class Search {
  public:
-  Search(CellProblem& problem, Order order, int views, std::int64_t limit)
-      : problem_(problem), order_(std::move(order)), views_(views), limit_(limit), mark_(problem.cells(), 0) {}
+  Search(CellProblem& problem, Order order, int views, const SearchLimit& limit)
+      : problem_(problem),
+        order_(std::move(order)),
+        views_(views),
+        limit_(limit.nodes),
+        until_(limit.until),
+        mark_(problem.cells(), 0) {}
 
-  std::int64_t run() {
+  SearchEnd run() {
     descend();
     anneal();
     descend();
-    return nodes_;
+    return {nodes_, !late_};
   }
 
  private:
-  bool out_of_nodes() const { return nodes_ >= limit_; }
+  /// The clock is asked now and then only; most searches have none to ask.
+  bool ended() {
+    if (until_ && !late_ && ++asked_ % 64 == 0) late_ = std::chrono::steady_clock::now() >= *until_;
+    return late_ || nodes_ >= limit_;
+  }
   void flip(int cell) {
     ++nodes_;
     problem_.flip(std::span(&cell, 1));
@@ -104,23 +113,23 @@ class Search {
   }
 
   void descend() {
-    for (std::int64_t before = problem_.energy() + 1; problem_.energy() < before && !out_of_nodes();) {
+    for (std::int64_t before = problem_.energy() + 1; problem_.energy() < before && !ended();) {
       before = problem_.energy();
       std::vector<int> move;
       const std::size_t most = std::max<std::size_t>(4, limit_ / 12 / std::max(1, problem_.cells()));
       for (int c = 0; c < problem_.cells(); ++c)
         for (int v = 0; v < views_; ++v)
           for (int w = 0; w < v; ++w) {
-            if (out_of_nodes()) return;
+            if (ended()) return;
             if (open_or_fill(c, v, w, problem_.keep()[c], most, move)) try_move(move);
           }
       for (const std::vector<int>& column : order_.columns) {
-        if (out_of_nodes()) return;
+        if (ended()) return;
         try_in_order(column, true);
         try_in_order(std::vector<int>(column.rbegin(), column.rend()), false);
         try_levels(column);
       }
-      for (int c = 0; c < problem_.cells() && !out_of_nodes(); ++c) {
+      for (int c = 0; c < problem_.cells() && !ended(); ++c) {
         const std::int64_t energy = problem_.energy();
         flip(c);
         if (problem_.energy() >= energy) flip(c);
@@ -167,7 +176,7 @@ class Search {
     std::vector<std::uint8_t> best(problem_.keep().begin(), problem_.keep().end());
     std::int64_t best_energy = problem_.energy();
     std::vector<int> move;
-    while (nodes_ - start < steps) {
+    while (nodes_ - start < steps && !ended()) {
       const double done = static_cast<double>(nodes_ - start) / steps;
       const double temperature = CellProblem::kUnit * kHot * std::pow(kCold / kHot, done);
       random_move(move);
@@ -206,7 +215,9 @@ class Search {
   CellProblem& problem_;
   Order order_;
   int views_;
-  std::int64_t limit_, nodes_ = 0;
+  std::int64_t limit_, nodes_ = 0, asked_ = 0;
+  std::optional<std::chrono::steady_clock::time_point> until_;
+  bool late_ = false;
   std::vector<int> queue_, mark_;
   int stamp_ = 0;
   Random random_;
@@ -227,8 +238,8 @@ std::int64_t drop_in_one_pass(CellProblem& problem) {
   return problem.cells() + static_cast<std::int64_t>(gains.size());
 }
 
-std::int64_t search_cells(CellProblem& problem, const Cells& cells, const Vec3i& size, std::span<const RegionMap> views,
-                          std::int64_t limit) {
+SearchEnd search_cells(CellProblem& problem, const Cells& cells, const Vec3i& size, std::span<const RegionMap> views,
+                       const SearchLimit& limit) {
   return Search(problem, order_of(cells, size, views), static_cast<int>(views.size()), limit).run();
 }
 

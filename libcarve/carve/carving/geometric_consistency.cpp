@@ -1,8 +1,10 @@
 #include "carve/carving/geometric_consistency.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "carve/carving/as_printed.h"
+#include "carve/carving/cell_alternatives.h"
 #include "carve/carving/cell_solver.h"
 #include "carve/carving/silhouette_cover.h"
 #include "carve/core/options.h"
@@ -15,37 +17,67 @@ struct Input {
   const Carving& hull;
   std::span<const RegionMap> regions;
   const ConsistencyOptions& options;
+  SearchLimit limit;
 };
 
-struct Carved {
-  VoxelGrid grid;
-  int cells = 0;
-  std::int64_t nodes = 0;
-};
+/// The cells' voxels, for those that are open.
+std::vector<OpenCell> boxes_of(const Cells& cells, std::span<const int> open, std::span<const std::uint8_t> keep) {
+  std::vector<int> place(cells.count, -1);
+  std::vector<OpenCell> out;
+  for (const int c : open) {
+    place[c] = static_cast<int>(out.size());
+    out.push_back({cells.volume[c], keep[c] != 0, Vec3i::Constant(kLargestGrid), Vec3i::Zero()});
+  }
+  for (const CellRun& run : cells.runs)
+    if (place[run.cell] >= 0) {
+      OpenCell& cell = out[place[run.cell]];
+      cell.low = cell.low.cwiseMin(Vec3i(run.x0, run.y, run.z));
+      cell.high = cell.high.cwiseMax(Vec3i(run.x1, run.y + 1, run.z + 1));
+    }
+  return out;
+}
 
-Carved as_printed(const Input& in) { return {carve_as_printed(in.hull)}; }
+ConsistencyResult as_printed(const Input& in) {
+  return {.grid = carve_as_printed(in.hull), .ran = Consistency::as_printed};
+}
 
 /// Decides cells with `decide` and puts them together.
 template <class Decide>
-Carved by_cells(const Input& in, Decide&& decide) {
-  const Vec3i& size = in.hull.grid.size();
+ConsistencyResult by_cells(const Input& in, Decide&& decide) {
   const Cells cells = partition(in.hull.grid, in.regions);
-  CellProblem problem(cells, size, in.regions, in.options.weights);
-  const std::int64_t nodes = decide(problem, cells);
-  return {assemble(in.hull.grid, cells, problem.keep()), cells.count, nodes};
+  CellProblem problem(cells, in.hull.grid.size(), in.regions, in.options.weights);
+  ConsistencyResult out;
+  out.cells = cells.count;
+  decide(problem, cells, out);
+  out.grid = assemble(in.hull.grid, cells, problem.keep());
+  const Alternatives others = find_alternatives(problem, in.options.alternatives);
+  out.solids = others.solids;
+  out.all_solids = others.all;
+  out.open_cells = boxes_of(cells, others.cells, problem.keep());
+  return out;
 }
 
-Carved two_level(const Input& in) {
-  return by_cells(in, [](CellProblem& problem, const Cells&) { return drop_in_one_pass(problem); });
-}
-
-Carved solver(const Input& in) {
-  return by_cells(in, [&](CellProblem& problem, const Cells& cells) {
-    return search_cells(problem, cells, in.hull.grid.size(), in.regions, in.options.nodes);
+ConsistencyResult two_level(const Input& in) {
+  return by_cells(in, [](CellProblem& problem, const Cells&, ConsistencyResult& out) {
+    out.ran = Consistency::two_level;
+    out.nodes = drop_in_one_pass(problem);
   });
 }
 
-using Arm = Carved (*)(const Input&);
+/// The search, or one pass where that ends lower: a search that was cut short may.
+ConsistencyResult solver(const Input& in) {
+  return by_cells(in, [&](CellProblem& problem, const Cells& cells, ConsistencyResult& out) {
+    const SearchEnd end = search_cells(problem, cells, in.hull.grid.size(), in.regions, in.limit);
+    CellProblem other(cells, in.hull.grid.size(), in.regions, in.options.weights);
+    out.nodes = end.nodes + drop_in_one_pass(other);
+    out.in_time = end.in_time;
+    const bool fallen_back = other.energy() < problem.energy();
+    out.ran = fallen_back ? Consistency::two_level : Consistency::solver;
+    if (fallen_back) problem = std::move(other);
+  });
+}
+
+using Arm = ConsistencyResult (*)(const Input&);
 constexpr Arm kArms[] = {nullptr, as_printed, two_level,
                          solver};  // in the order of Consistency; none has nothing to do
 
@@ -68,18 +100,24 @@ ConsistencyResult apply_consistency(const Carving& hull, const ViewSet& views, c
   result.hull_score = result.score = score_strokes(hull.grid, regions);
   monitor.at("consistency", 0.3);
 
-  Carved carved = kArms[static_cast<int>(options.arm)]({hull, regions, options});
-  result.cells = carved.cells;
-  result.nodes = carved.nodes;
+  Input in{hull, regions, options, {options.nodes, {}}};
+  const auto start = std::chrono::steady_clock::now();
+  if (options.seconds)
+    in.limit.until = start + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                                 std::chrono::duration<double>(*options.seconds));
+  ConsistencyResult carved = kArms[static_cast<int>(options.arm)](in);
+  carved.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   monitor.at("consistency", 0.9);
+  carved.regions = result.regions;
+  carved.hull_score = result.hull_score;
   if (options.self_check) carved.grid = cover_silhouettes(std::move(carved.grid), hull.grid, names);
-  const StrokeScore score = score_strokes(carved.grid, regions);
-  if (!options.self_check || score.value() > result.hull_score.value()) {
-    result.grid = std::move(carved.grid);
-    result.ran = options.arm;
-    result.score = score;
+  carved.score = score_strokes(carved.grid, regions);
+  if (options.self_check && carved.score.value() <= result.hull_score.value()) {
+    carved.grid = hull.grid;
+    carved.ran = Consistency::none;
+    carved.score = carved.hull_score;
   }
-  return result;
+  return carved;
 }
 
 }  // namespace carve
