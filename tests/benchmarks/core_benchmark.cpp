@@ -5,10 +5,12 @@
 
 #include "carve/carving/carve_silhouettes.h"
 #include "carve/core/parallel.h"
+#include "carve/pipeline/reconstruct.h"
 #include "carve/surface/crossings.h"
 #include "carve/surface/marching_cubes.h"
 #include "carve/surface/smooth.h"
 #include "models/procedural.h"
+#include "run/models.h"
 #include "shapes.h"
 #include "synthesize/synthesize.h"
 
@@ -87,6 +89,47 @@ void BM_Couch(benchmark::State& state) {
     return smooth(marching_cubes(carving.grid, contour_crossings(couch_views(), carving.grid)));
   });
 }
+
+/// The drawings of a model, understood: what reconstruct() starts from.
+const std::map<View, Drawing>& drawings_of(const std::string& name) {
+  static std::map<std::string, std::map<View, Drawing>> all;
+  auto& drawings = all[name];
+  if (drawings.empty()) {
+    const experiments::Subject subject = experiments::make_subject(name);
+    for (const auto& [view, picture] : subject.model ? synthesize(*subject.model) : subject.drawings)
+      drawings.emplace(view, understand_drawing(picture));
+  }
+  return drawings;
+}
+
+/// Labels to smoothed mesh on one thread, with the stages' milliseconds beside the whole.
+void measure_model(benchmark::State& state, const std::string& name, Consistency arm) {
+  const std::map<View, Drawing>& drawings = drawings_of(name);
+  PipelineOptions options;
+  options.consistency.arm = arm;
+  std::map<std::string, double> times;
+  set_thread_count(1);
+  for (auto _ : state) {
+    state.PauseTiming();
+    std::map<View, Drawing> input = drawings;
+    state.ResumeTiming();
+    const Reconstruction result = reconstruct(std::move(input), options);
+    for (const StageTime& time : result.times) times[time.stage] += time.seconds;
+  }
+  set_thread_count(0);
+  for (const auto& [stage, seconds] : times)
+    state.counters[stage] = 1000 * seconds / static_cast<double>(state.iterations());
+}
+
+const bool kModelsAreRegistered = [] {
+  for (const std::string& name : experiments::expand_subjects({"set:procedural", "set:artist", "set:drawing"}))
+    for (const Consistency arm : {Consistency::none, Consistency::solver})
+      benchmark::RegisterBenchmark(
+          ("BM_Model/" + name + "/" + names(arm)[static_cast<int>(arm)]).c_str(),
+          [name, arm](benchmark::State& state) { measure_model(state, name, arm); })
+          ->Unit(benchmark::kMillisecond);
+  return true;
+}();
 
 constexpr auto kUnit = benchmark::kMillisecond;
 BENCHMARK(BM_PatchLabels)->ArgsProduct({{256, 512, 1024}, {1, 2}})->Unit(kUnit)->UseRealTime();
