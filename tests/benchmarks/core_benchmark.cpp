@@ -124,9 +124,8 @@ void measure_model(benchmark::State& state, const std::string& name, Consistency
 const bool kModelsAreRegistered = [] {
   for (const std::string& name : experiments::expand_subjects({"set:procedural", "set:artist", "set:drawing"}))
     for (const Consistency arm : {Consistency::none, Consistency::solver})
-      benchmark::RegisterBenchmark(
-          ("BM_Model/" + name + "/" + names(arm)[static_cast<int>(arm)]).c_str(),
-          [name, arm](benchmark::State& state) { measure_model(state, name, arm); })
+      benchmark::RegisterBenchmark(("BM_Model/" + name + "/" + names(arm)[static_cast<int>(arm)]).c_str(),
+                                   [name, arm](benchmark::State& state) { measure_model(state, name, arm); })
           ->Unit(benchmark::kMillisecond);
   return true;
 }();

@@ -34,10 +34,9 @@ enum class Border : std::uint8_t {
 struct RegionMap {
   View view;
   int count = 0;
-  Raster<int> region;             // 0 .. count-1; -1 where the hull has no voxel
-  Raster<Border> right, below;    // border to the pixel on the right / below
-  Raster<float> stroke_distance;  // voxels from the pixel's centre to the nearest inner stroke
-  std::vector<Vec3> colour;       // mean sRGB per region, 0..255
+  Raster<int> region;           // 0 .. count-1; -1 where the hull has no voxel
+  Raster<Border> right, below;  // border to the pixel on the right / below
+  std::vector<Vec3> colour;     // mean sRGB per region, 0..255
 };
 
 /// \param hull  its shadow says which pixels are the object
