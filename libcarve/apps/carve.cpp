@@ -148,7 +148,10 @@ Json json_of(const Arguments& arguments, const Reconstruction& result) {
 }
 
 void refuse_to_overwrite_input(const Arguments& arguments) {
-  for (const fs::path& written : {arguments.out, arguments.report})
+  std::vector<fs::path> all{arguments.out, arguments.report};
+  if (arguments.options.texture.arm != TextureArm::none)
+    for (const fs::path& beside : texture_files(arguments.out)) all.push_back(beside);
+  for (const fs::path& written : all)
     for (const auto& [view, drawing] : arguments.drawings) {
       std::error_code ignored;
       if (!written.empty() && fs::equivalent(written, drawing, ignored))
@@ -156,14 +159,25 @@ void refuse_to_overwrite_input(const Arguments& arguments) {
     }
 }
 
-int build(const Arguments& arguments) {
+// The best arm where the format holds a texture; a texture that was asked for is never dropped.
+void settle_texture(const fs::path& out, TextureArm& arm) {
+  if (arm == TextureArm::automatic) arm = holds_texture(out) ? TextureArm::best_view : TextureArm::none;
+  if (arm != TextureArm::none && !holds_texture(out))
+    throw std::invalid_argument(out.string() + ": a texture needs .glb or .obj; for this format give --texture none");
+}
+
+int build(Arguments& arguments) {
+  settle_texture(arguments.out, arguments.options.texture.arm);
   refuse_to_overwrite_input(arguments);
   const auto start = std::chrono::steady_clock::now();
   auto drawings = read_drawings(arguments.drawings, arguments.options.drawing);
   const double reading = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   Reconstruction result = reconstruct(std::move(drawings), arguments.options, progress_on_stderr(arguments.quiet));
   result.times.insert(result.times.begin(), {"read", reading});
-  write_mesh(arguments.out, result.mesh);
+  if (result.textured.texture.empty())
+    write_mesh(arguments.out, result.mesh);
+  else
+    write_textured_mesh(arguments.out, result.textured);
   if (!arguments.report.empty())
     write_file(arguments.report, [&](std::ostream& out) { out << json_of(arguments, result).dump(2) << '\n'; });
   if (!arguments.quiet) {

@@ -68,6 +68,33 @@ TEST_F(CarveProgram, BuildsASolidInEveryFormat) {
   }
 }
 
+TEST_F(CarveProgram, TexturesWhatCanHoldATexture) {
+  const auto has = [&](const std::string& more, const char* name, const char* what) {
+    const Outcome outcome = build(more + " --atlas-size 256 -o " + path(name));
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return read_file(path(name)).find(what) != std::string::npos;
+  };
+  EXPECT_TRUE(has("", "out.glb", "image/png"));
+  EXPECT_TRUE(has("--texture blend", "out.glb", "image/png"));
+  EXPECT_FALSE(has("--texture none", "out.glb", "image/png"));
+  EXPECT_TRUE(has("", "out.obj", "map_Kd") || has("", "out.obj", "mtllib out.mtl"));
+  EXPECT_EQ(read_image(path("out.png")).width, 256);
+  EXPECT_EQ(build("-o " + path("out.ply")).code, 0);
+}
+
+TEST_F(CarveProgram, ATextureIsNeverDroppedSilently) {
+  expect_refused(build("--texture best_view -o " + path("out.stl")), {"out.stl", "--texture none"});
+  expect_refused(build("--atlas-size 9000 -o " + path("out.glb")), {"atlas.size", "[16, 8192]"});
+  expect_refused(build("--texture best -o " + path("out.glb")), {"texture.arm", "best_view"});
+}
+
+TEST_F(CarveProgram, APictureBesideTheMeshNeverReplacesADrawing) {
+  const std::string before = read_file(path("front.png"));
+  expect_refused(build("-o " + path("front.obj")), {"front.png", "must not be the front drawing"});
+  EXPECT_EQ(read_file(path("front.png")), before);
+  EXPECT_EQ(build("--texture none -o " + path("front.obj")).code, 0);
+}
+
 TEST_F(CarveProgram, TheMeshIsCentredStandsOnTheGroundAndHasLongestSideOne) {
   ASSERT_EQ(build("--smooth-steps 0 -o " + path("out.ply")).code, 0);
   Eigen::AlignedBox3d box;

@@ -145,6 +145,7 @@ bool write_rows(Writer& writer, const Picture& picture, bool opaque) {
   png_set_IHDR(writer.png, writer.info, picture.width, picture.height, 8,
                opaque ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGB_ALPHA, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
                PNG_FILTER_TYPE_DEFAULT);
+  png_set_sRGB(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
   // Unfiltered rows at level 3: for flat colours and atlases of them five times as fast as filters chosen row by row,
   // and no larger; photographs come out some percent larger.
   png_set_compression_level(writer.png, 3);

@@ -17,6 +17,9 @@ void write_obj(std::ostream& out, const Mesh& mesh);
 void write_off(std::ostream& out, const Mesh& mesh);
 void write_stl(std::ostream& out, const Mesh& mesh);
 void write_glb(std::ostream& out, const Mesh& mesh);
+void write_textured_glb(std::ostream& out, const TexturedMesh& textured);
+/// \param material  the file that says which picture `texture` is, as named in the OBJ file
+void write_textured_obj(std::ostream& out, const TexturedMesh& textured, const std::string& material);
 
 Mesh read_ply(const std::string& path, std::string_view bytes);
 Mesh read_obj(const std::string& path, std::string_view bytes);

@@ -4,6 +4,7 @@
 #include <ostream>
 #include <stdexcept>
 
+#include "carve/image/read_image.h"
 #include "carve/mesh/formats.h"
 
 namespace carve::formats {
@@ -36,41 +37,86 @@ std::vector<Vec3f> vertex_normals(const Mesh& mesh) {
 
 Json numbers(const Vec3f& v) { return Json::array({double(v.x()), double(v.y()), double(v.z())}); }
 
-struct Layout {
-  std::size_t vertices, indices, index_size;
-  std::size_t vector_bytes() const { return 12 * vertices; }
-  std::size_t index_bytes() const { return index_size * indices; }
-  std::size_t bytes() const { return (2 * vector_bytes() + index_bytes() + 3) / 4 * 4; }
+// What a file holds: vertices, along seams one a texture coordinate, and a picture.
+struct Content {
+  std::vector<Vec3f> positions, normals;
+  std::vector<Eigen::Vector2f> uvs;  // as many, or none
+  std::vector<int> indices;
+  std::string png;
 };
 
-std::string describe(const Layout& layout, const Vec3f& low, const Vec3f& high) {
+class Layout {
+ public:
+  explicit Layout(const Content& content) : vertices(content.positions.size()), indices(content.indices.size()) {
+    // 65535 restarts a strip, so it is not an index.
+    index_size = vertices <= 65535 ? 2 : 4;
+    const bool textured = !content.uvs.empty();
+    add(12 * vertices, kVertices), add(12 * vertices, kVertices);
+    if (textured) add(8 * vertices, kVertices);
+    add(index_size * indices, kIndices);
+    if (textured) add(content.png.size(), 0);
+  }
+
+  struct View {
+    std::size_t begin, length;
+    int target;  // 0 = neither vertices nor indices
+  };
+  std::size_t vertices, indices, index_size;
+  std::vector<View> views;
+  std::size_t bytes = 0;
+
+ private:
+  void add(std::size_t length, int target) {
+    views.push_back({bytes, length, target});
+    bytes = (bytes + length + 3) / 4 * 4;
+  }
+};
+
+Json accessors(const Layout& layout, const Content& content) {
+  Vec3f low = content.positions[0], high = low;
+  for (const Vec3f& position : content.positions) low = low.cwiseMin(position), high = high.cwiseMax(position);
+  const auto vertices = [&](int view, const char* type) {
+    return Json{{"bufferView", view}, {"componentType", kFloat}, {"count", layout.vertices}, {"type", type}};
+  };
+  Json all = {vertices(0, "VEC3"), vertices(1, "VEC3")};
+  all[0]["min"] = numbers(low);
+  all[0]["max"] = numbers(high);
+  if (!content.uvs.empty()) all.push_back(vertices(2, "VEC2"));
+  all.push_back({{"bufferView", all.size()},
+                 {"componentType", layout.index_size == 2 ? kUnsignedShort : kUnsignedInt},
+                 {"count", layout.indices},
+                 {"type", "SCALAR"}});
+  return all;
+}
+
+std::string describe(const Layout& layout, const Content& content) {
+  const bool textured = !content.uvs.empty();
   Json json;
   json["asset"] = {{"version", "2.0"}, {"generator", "carve"}};
   json["scene"] = 0;
   json["scenes"] = {{{"nodes", {0}}}};
   json["nodes"] = {{{"mesh", 0}}};
-  const Json attributes = {{"POSITION", 0}, {"NORMAL", 1}};
-  const Json primitive = {{"attributes", attributes}, {"indices", 2}, {"material", 0}};
+  Json attributes = {{"POSITION", 0}, {"NORMAL", 1}};
+  if (textured) attributes["TEXCOORD_0"] = 2;
+  const Json primitive = {{"attributes", attributes}, {"indices", textured ? 3 : 2}, {"material", 0}};
   json["meshes"] = {{{"primitives", Json::array({primitive})}}};
-  json["materials"] = {{{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 1}}}}};
-  json["accessors"] = {{{"bufferView", 0},
-                        {"componentType", kFloat},
-                        {"count", layout.vertices},
-                        {"type", "VEC3"},
-                        {"min", numbers(low)},
-                        {"max", numbers(high)}},
-                       {{"bufferView", 1}, {"componentType", kFloat}, {"count", layout.vertices}, {"type", "VEC3"}},
-                       {{"bufferView", 2},
-                        {"componentType", layout.index_size == 2 ? kUnsignedShort : kUnsignedInt},
-                        {"count", layout.indices},
-                        {"type", "SCALAR"}}};
-  const auto view = [&](std::size_t begin, std::size_t length, int target) {
-    return Json{{"buffer", 0}, {"byteOffset", begin}, {"byteLength", length}, {"target", target}};
-  };
-  json["bufferViews"] = {view(0, layout.vector_bytes(), kVertices),
-                         view(layout.vector_bytes(), layout.vector_bytes(), kVertices),
-                         view(2 * layout.vector_bytes(), layout.index_bytes(), kIndices)};
-  json["buffers"] = {{{"byteLength", layout.bytes()}}};
+  Json surface = {{"metallicFactor", 0}, {"roughnessFactor", 1}};
+  if (textured) {
+    surface["baseColorTexture"] = {{"index", 0}};
+    json["textures"] = {{{"source", 0}, {"sampler", 0}}};
+    json["images"] = {{{"bufferView", 4}, {"mimeType", "image/png"}}};
+    constexpr int kLinear = 9729, kLinearMipmapLinear = 9987, kClamp = 33071;
+    json["samplers"] = {
+        {{"magFilter", kLinear}, {"minFilter", kLinearMipmapLinear}, {"wrapS", kClamp}, {"wrapT", kClamp}}};
+  }
+  json["materials"] = {{{"pbrMetallicRoughness", surface}}};
+  json["accessors"] = accessors(layout, content);
+  for (const auto& [begin, length, target] : layout.views) {
+    Json view = {{"buffer", 0}, {"byteOffset", begin}, {"byteLength", length}};
+    if (target) view["target"] = target;
+    json["bufferViews"].push_back(view);
+  }
+  json["buffers"] = {{{"byteLength", layout.bytes}}};
   std::string text = json.dump();
   text.resize((text.size() + 3) / 4 * 4, ' ');
   return text;
@@ -89,35 +135,63 @@ void write_header(Sink& sink, const std::string& json, std::size_t binary) {
   sink.raw(kBinaryChunk);
 }
 
+void write(std::ostream& out, const Content& content) {
+  if (content.indices.empty()) throw std::invalid_argument("a GLB file must hold a triangle, the mesh has none");
+  const Layout layout(content);
+  Sink sink(out);
+  write_header(sink, describe(layout, content), layout.bytes);
+  const auto pad = [&](std::size_t written) {
+    for (; written % 4 != 0; ++written) sink.raw('\0');
+  };
+  for (const Vec3f& position : content.positions) sink.raw(position);
+  for (const Vec3f& normal : content.normals) sink.raw(normal);
+  for (const Eigen::Vector2f& uv : content.uvs) sink.raw(uv);
+  for (const int i : content.indices) {
+    if (layout.index_size == 2)
+      sink.raw(static_cast<std::uint16_t>(i));
+    else
+      sink.raw(static_cast<std::uint32_t>(i));
+  }
+  pad(layout.index_size * layout.indices);
+  sink.text(content.png);
+  pad(content.png.size());
+}
+
 }  // namespace
 
 void write_glb(std::ostream& out, const Mesh& mesh) {
-  std::size_t triangles = 0;
-  for (const Triangle& triangle : mesh.triangles) triangles += !is_degenerate(triangle);
-  if (triangles == 0) throw std::invalid_argument("a GLB file must hold a triangle, the mesh has none");
-  Vec3f low = to_file(mesh.positions[0]), high = low;
-  for (const Vec3& position : mesh.positions) {
-    low = low.cwiseMin(to_file(position));
-    high = high.cwiseMax(to_file(position));
-  }
-  // 65535 restarts a strip, so it is not an index.
-  const std::size_t index_size = mesh.positions.size() <= 65535 ? 2 : 4;
-  const Layout layout{mesh.positions.size(), 3 * triangles, index_size};
+  Content content;
+  for (const Vec3& position : mesh.positions) content.positions.push_back(to_file(position));
+  content.normals = vertex_normals(mesh);
+  for (const Triangle& triangle : mesh.triangles)
+    if (!is_degenerate(triangle)) content.indices.insert(content.indices.end(), triangle.begin(), triangle.end());
+  write(out, content);
+}
 
-  Sink sink(out);
-  write_header(sink, describe(layout, low, high), layout.bytes());
-  for (const Vec3& position : mesh.positions) sink.raw(to_file(position));
-  for (const Vec3f& normal : vertex_normals(mesh)) sink.raw(normal);
-  for (const Triangle& triangle : mesh.triangles) {
+void write_textured_glb(std::ostream& out, const TexturedMesh& textured) {
+  const std::vector<Vec3f> normals = vertex_normals(textured.mesh);
+  Content content;
+  content.png = encode_png(textured.texture);
+  // A vertex a pair of position and texture coordinate; those of one coordinate mostly have one position.
+  std::vector<int> first(textured.uvs.size(), -1), next, position;
+  const auto vertex = [&](int p, int uv) {
+    int* at = &first[uv];
+    while (*at >= 0 && position[*at] != p) at = &next[*at];
+    if (*at >= 0) return *at;
+    *at = static_cast<int>(position.size());  // before next grows
+    const int made = *at;
+    position.push_back(p), next.push_back(-1);
+    content.positions.push_back(to_file(textured.mesh.positions[p]));
+    content.normals.push_back(normals[p]);
+    content.uvs.emplace_back(textured.uvs[uv].cast<float>());
+    return made;
+  };
+  for (std::size_t t = 0; t < textured.mesh.triangles.size(); ++t) {
+    const Triangle& triangle = textured.mesh.triangles[t];
     if (is_degenerate(triangle)) continue;
-    for (const int i : triangle) {
-      if (index_size == 2)
-        sink.raw(static_cast<std::uint16_t>(i));
-      else
-        sink.raw(static_cast<std::uint32_t>(i));
-    }
+    for (int k = 0; k < 3; ++k) content.indices.push_back(vertex(triangle[k], textured.uv_triangles[t][k]));
   }
-  sink.text(std::string(layout.bytes() - 2 * layout.vector_bytes() - layout.index_bytes(), '\0'));
+  write(out, content);
 }
 
 }  // namespace carve::formats

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "carve/core/file.h"
+#include "carve/image/read_image.h"
 #include "carve/mesh/formats.h"
 #include "carve/mesh/ply.h"
 
@@ -39,7 +40,54 @@ std::string unknown_ending(const fs::path& path) {
   return "a mesh file's ending must be one of " + endings + ", got " + formats::excerpt(path.extension().string());
 }
 
+bool has_ending(const fs::path& path, const char* ending) {
+  const Format* format = format_of(path);
+  return format && std::string(format->ending) == ending;
+}
+
+void check_texture(const std::string& path, const TexturedMesh& textured) {
+  if (textured.uv_triangles.size() != textured.mesh.triangles.size())
+    throw std::invalid_argument(path + ": uv_triangles must be as many as the mesh's triangles, " +
+                                std::to_string(textured.mesh.triangles.size()) + ", got " +
+                                std::to_string(textured.uv_triangles.size()));
+  for (const Triangle& triangle : textured.uv_triangles)
+    for (const int i : triangle)
+      if (std::size_t(i) >= textured.uvs.size())
+        throw std::invalid_argument(path + ": uv_triangles must index one of " + std::to_string(textured.uvs.size()) +
+                                    " uvs, got " + std::to_string(i));
+  if (!std::all_of(textured.uvs.begin(), textured.uvs.end(), [](const Vec2& uv) { return uv.allFinite(); }))
+    throw std::invalid_argument(path + ": uvs must be finite");
+}
+
+// The picture, the material that names it, then the mesh that names the material.
+void write_obj_files(const fs::path& path, const TexturedMesh& textured) {
+  const std::vector<fs::path> beside = texture_files(path);
+  const fs::path &picture = beside[0], &material = beside[1];
+  const std::string bytes = encode_png(textured.texture);
+  write_file(picture, [&](std::ostream& out) { out.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); });
+  write_file(material, [&](std::ostream& out) {
+    out << "newmtl texture\nKa 1 1 1\nKd 1 1 1\nKs 0 0 0\nillum 1\nmap_Kd " << picture.filename().string() << "\n";
+  });
+  write_file(path,
+             [&](std::ostream& out) { formats::write_textured_obj(out, textured, material.filename().string()); });
+}
+
 }  // namespace
+
+bool holds_texture(const fs::path& path) { return has_ending(path, ".glb") || has_ending(path, ".obj"); }
+
+std::vector<fs::path> texture_files(const fs::path& path) {
+  if (!has_ending(path, ".obj")) return {};
+  return {fs::path(path).replace_extension(".png"), fs::path(path).replace_extension(".mtl")};
+}
+
+void write_textured_mesh(const fs::path& path, const TexturedMesh& textured, const WriteOptions& options) {
+  if (textured.texture.empty() || !holds_texture(path)) return write_mesh(path, textured.mesh, options);
+  check_texture(path.string(), textured);
+  formats::check_writable(path.string(), textured.mesh, options);
+  if (has_ending(path, ".obj")) return write_obj_files(path, textured);
+  write_file(path, [&](std::ostream& out) { formats::write_textured_glb(out, textured); });
+}
 
 void write_mesh(const fs::path& path, const Mesh& mesh, const WriteOptions& options) {
   const Format* format = format_of(path);

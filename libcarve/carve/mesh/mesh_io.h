@@ -1,7 +1,8 @@
 #pragma once
 #include <filesystem>
+#include <vector>
 
-#include "carve/mesh/mesh.h"
+#include "carve/mesh/textured_mesh.h"
 
 namespace carve {
 
@@ -16,10 +17,21 @@ struct WriteOptions {
 ///         check_mesh refuses or the format cannot hold, or (strict) a mesh that is not solid, saying what is wrong
 void write_mesh(const std::filesystem::path& path, const Mesh& mesh, const WriteOptions& options = {});
 
+/// write_mesh, with the texture where the format holds one and there is one: .glb with the PNG inside; .obj with a
+/// material file and a PNG beside it, named like it (the mesh is written last). sRGB, as the formats have it. \throws
+/// also std::invalid_argument: texture coordinates that are not finite or do not fit the triangles
+void write_textured_mesh(const std::filesystem::path& path, const TexturedMesh& textured,
+                         const WriteOptions& options = {});
+/// By the name's ending: .glb and .obj.
+bool holds_texture(const std::filesystem::path& path);
+/// The files that are written beside `path` if there is a texture: for OBJ the picture and the material.
+std::vector<std::filesystem::path> texture_files(const std::filesystem::path& path);
+
 /// Reads PLY (ascii, binary of either endianness), OBJ, STL (ascii, binary; equal corners merged), OFF and GLB (every
-/// mesh of the scene where its nodes put it); polygons are fan-triangulated, what is not geometry is skipped. STL is
-/// turned from Z up to Y up, as write_mesh turned it. Needs memory for the file and the mesh, whatever the file says.
-/// \throws IoError naming the place: missing, truncated, indices out of range, coordinates that are not finite, counts
+/// mesh of the scene where its nodes put it; in those with texture coordinates, which GLB splits along seams, vertices
+/// at equal positions are merged); polygons are fan-triangulated, what is not geometry is skipped. STL is turned from Z
+/// up to Y up, as write_mesh turned it. Needs memory for the file and the mesh, whatever the file says. \throws IoError
+/// naming the place: missing, truncated, indices out of range, coordinates that are not finite, counts
 ///         the file cannot hold
 Mesh read_mesh(const std::filesystem::path& path);
 

@@ -79,14 +79,38 @@ class ObjReader {
 
 }  // namespace
 
-void write_obj(std::ostream& out, const Mesh& mesh) {
-  Sink sink(out);
+namespace {
+void write_positions(Sink& sink, const Mesh& mesh) {
   sink.text("# carve: Y up, front towards +Z; object units (the longest side is 1 unless a size was given)\n");
   for (const Vec3& p : mesh.positions) {
     sink.text("v");
     for (const double x : p) sink.text(" "), sink.number(x);
     sink.text("\n");
   }
+}
+}  // namespace
+
+void write_textured_obj(std::ostream& out, const TexturedMesh& textured, const std::string& material) {
+  Sink sink(out);
+  write_positions(sink, textured.mesh);
+  sink.text("mtllib " + material + "\nusemtl texture\n");
+  for (const Vec2& uv : textured.uvs) {
+    sink.text("vt "), sink.number(uv.x()), sink.text(" ");
+    sink.number(1 - uv.y()), sink.text("\n");
+  }
+  for (std::size_t t = 0; t < textured.mesh.triangles.size(); ++t) {
+    sink.text("f");
+    for (int k = 0; k < 3; ++k) {
+      sink.text(" "), sink.number(textured.mesh.triangles[t][k] + 1);
+      sink.text("/"), sink.number(textured.uv_triangles[t][k] + 1);
+    }
+    sink.text("\n");
+  }
+}
+
+void write_obj(std::ostream& out, const Mesh& mesh) {
+  Sink sink(out);
+  write_positions(sink, mesh);
   for (const Triangle& t : mesh.triangles) {
     sink.text("f");
     for (const int i : t) sink.text(" "), sink.number(i + 1);

@@ -1,7 +1,9 @@
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <optional>
 
 #include "carve/mesh/formats.h"
@@ -215,8 +217,33 @@ class GlbReader {
       if (!world.allFinite()) fail("POSITION " + std::to_string(i) + " must be finite");
       mesh_.positions.push_back(world);
     }
-    add_triangles(corners(primitive, positions.count), static_cast<Mode>(member(primitive, "mode", kTriangles)), base,
+    std::vector<int> corners = this->corners(primitive, positions.count);
+    if (primitive.at("attributes").contains("TEXCOORD_0")) merge_equal(base, corners);
+    add_triangles(corners, static_cast<Mode>(member(primitive, "mode", kTriangles)), base,
                   place.linear().determinant() < 0);
+  }
+
+  // Joins what texture coordinates have split: of the vertices from `base` on at one position only the first stays.
+  void merge_equal(int base, std::vector<int>& corners) {
+    const auto less = [](const Vec3& a, const Vec3& b) {
+      return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+    };
+    const int count = static_cast<int>(mesh_.positions.size()) - base;
+    std::vector<int> order(count), merged(count);
+    std::iota(order.begin(), order.end(), base);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](int a, int b) { return less(mesh_.positions[a], mesh_.positions[b]); });
+    std::vector<int> same(count);  // the first vertex of this position
+    for (int i = 0; i < count; ++i)
+      same[order[i] - base] =
+          i > 0 && mesh_.positions[order[i]] == mesh_.positions[order[i - 1]] ? same[order[i - 1] - base] : order[i];
+    int kept = 0;
+    for (int i = 0; i < count; ++i) {
+      merged[i] = same[i] == base + i ? kept++ : merged[same[i] - base];
+      mesh_.positions[base + merged[i]] = mesh_.positions[base + i];
+    }
+    mesh_.positions.resize(base + kept);
+    for (int& corner : corners) corner = merged[corner];
   }
 
   std::vector<int> corners(const Json& primitive, std::size_t vertices) const {

@@ -41,6 +41,8 @@ std::vector<Field> fields(PipelineOptions& options) {
   add_fields(all, "drawing", options.drawing);
   add_fields(all, "align", options.align);
   add_fields(all, "smooth", options.smooth);
+  add_fields(all, "texture", options.texture);
+  add_fields(all, "atlas", options.atlas);
   return all;
 }
 
@@ -63,7 +65,7 @@ Reconstruction reconstruct(std::map<View, Drawing> drawings, const PipelineOptio
   for (const Field& field : fields(checked)) field.set(field.get());
 
   Reconstruction result;
-  Stages stage(monitor, 8, result.times);
+  Stages stage(monitor, 9, result.times);
   result.views = stage("align", [&] { return align(std::move(drawings), options.align); });
   const Carving hull = stage("carve", [&] { return carve_silhouettes(result.views, options.carve); });
   result.consistency =
@@ -81,6 +83,9 @@ Reconstruction reconstruct(std::map<View, Drawing> drawings, const PipelineOptio
   Mesh surface = stage("surface", [&] { return marching_cubes(result.grid, crossings); });
   result.mesh = stage("smooth", [&] { return smooth(std::move(surface), options.smooth, monitor); });
   result.topology = stage("check", [&] { return topology(result.mesh); });
+  if (options.texture.arm == TextureArm::blend || options.texture.arm == TextureArm::best_view)
+    result.textured = stage(
+        "texture", [&] { return texture(result.mesh, result.views, options.texture, options.atlas, monitor); });
   result.agreement = agreement(result.grid, result.views);
   monitor.at("done", 1);
   return result;

@@ -13,6 +13,7 @@
 #include "carve/image/read_image.h"
 #include "carve/mesh/topology.h"
 #include "carve/surface/smooth.h"
+#include "carve/texture/texture.h"
 
 namespace carve {
 
@@ -25,6 +26,8 @@ struct PipelineOptions {
   DrawingOptions drawing;
   AlignOptions align;
   SmoothOptions smooth;
+  TextureOptions texture;  // automatic is none here: carve build knows what the output's format holds
+  AtlasOptions atlas;
 };
 
 template <class Visitor>
@@ -46,6 +49,7 @@ struct Reconstruction {
   VoxelGrid grid;  // the solid the mesh was made from
   ConsistencyResult consistency;  // its grid is empty: it became `grid`
   Topology topology;
+  TexturedMesh textured;  // the mesh again with its texture; empty if there was to be none
   ViewSet views;
   std::vector<ViewAgreement> agreement;
   std::vector<StageTime> times;
@@ -55,7 +59,7 @@ struct Reconstruction {
 std::map<View, Drawing> read_drawings(const std::map<View, std::filesystem::path>& paths,
                                       const DrawingOptions& options = {});
 
-/// The whole way: align, carve, consistency, convex, surface, smooth.
+/// The whole way: align, carve, consistency, convex, surface, smooth, texture.
 /// \throws std::invalid_argument on options or views that cannot work; NoResult if nothing is left
 Reconstruction reconstruct(std::map<View, Drawing> drawings, const PipelineOptions& options = {},
                            const Monitor& monitor = {});
