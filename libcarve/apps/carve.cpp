@@ -115,6 +115,15 @@ Json json_of(const Arguments& arguments, const Reconstruction& result) {
     open_cells.push_back({{"voxels", cell.voxels}, {"kept", cell.kept}, {"low", cell.low}, {"high", cell.high}});
   Json times = Json::object();
   for (const StageTime& time : result.times) times[time.stage] = time.seconds;
+  Json refinement = Json::array();
+  for (const RefinementStep& step : result.refinement)
+    refinement.push_back({{"stage", step.stage},
+                          {"kept", step.kept},
+                          {"why", step.why},
+                          {"put_back", step.put_back},
+                          {"triangles", step.triangles},
+                          {"self_intersections", step.self_intersections},
+                          {"seconds", step.seconds}});
   const Topology& t = result.topology;
   Arguments copy = arguments;
   return {{"output", arguments.out.string()},
@@ -133,6 +142,7 @@ Json json_of(const Arguments& arguments, const Reconstruction& result) {
             {"equal_solids", result.consistency.solids},
             {"all_equal_solids", result.consistency.all_solids},
             {"open_cells", open_cells}}},
+          {"refinement", refinement},
           {"mesh",
            {{"vertices", t.vertices},
             {"triangles", t.triangles},
@@ -178,6 +188,9 @@ int build(Arguments& arguments) {
     write_mesh(arguments.out, result.mesh);
   else
     write_textured_mesh(arguments.out, result.textured);
+  for (const RefinementStep& step : result.refinement)
+    if (!step.kept && !arguments.quiet)
+      std::cerr << "carve: " << step.stage << " was rolled back: " << step.why << '\n';
   if (!arguments.report.empty())
     write_file(arguments.report, [&](std::ostream& out) { out << json_of(arguments, result).dump(2) << '\n'; });
   if (!arguments.quiet) {

@@ -34,8 +34,17 @@ void add_flags(CLI::App& app, std::span<const Field> fields) {
         throw CLI::ValidationError(error.what());
       }
     };
-    app.add_option_function<std::string>(flag, set, field.help)
-        ->type_name(field.range)
+    // --refine remesh decimate: a stage's arms are several words, or one with commas.
+    const bool several = field.kind == Field::Kind::list && field.name.ends_with(".arm");
+    const auto set_several = [set](const std::vector<std::string>& words) {
+      std::string text;
+      for (const std::string& word : words) text += (text.empty() ? "" : ",") + word;
+      set(text);
+    };
+    CLI::Option* const option = several
+                                    ? app.add_option_function<std::vector<std::string>>(flag, set_several, field.help)
+                                    : app.add_option_function<std::string>(flag, set, field.help);
+    option->type_name(field.range)
         ->default_str(field.get())
         ->group(field.name.find('.') == std::string::npos ? "Options" : field.name.substr(0, field.name.find('.')))
         ->trigger_on_parse();

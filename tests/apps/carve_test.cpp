@@ -129,6 +129,23 @@ TEST_F(CarveProgram, ReportsWhatItDidAsJson) {
   EXPECT_EQ(report["views"]["side"]["background"], "alpha");
 }
 
+TEST_F(CarveProgram, RefinesInTheOrderThatIsAskedForAndDecimatesLast) {
+  ASSERT_EQ(build("-o " + path("a.ply") + " --refine remesh tangential --faces 500 --json " + path("r.json")).code, 0);
+  const auto report = nlohmann::json::parse(std::ifstream(folder_ / "r.json"));
+  std::vector<std::string> stages;
+  for (const auto& step : report["refinement"]) {
+    stages.push_back(step["stage"]);
+    EXPECT_TRUE(step["kept"]);
+  }
+  EXPECT_EQ(stages, (std::vector<std::string>{"remesh", "tangential", "decimate"}));
+  EXPECT_NEAR(topology(read_mesh(folder_ / "a.ply")).triangles, 500, 5);
+}
+
+TEST_F(CarveProgram, UnknownRefinement) {
+  expect_refused(build("-o " + path("out.ply") + " --refine polish"), {"refine.arm", "remesh", "polish"});
+  expect_refused(build("-o " + path("out.ply") + " --refine decimate"), {"decimate", "faces"});
+}
+
 TEST_F(CarveProgram, ConfigReadsBackAndFlagsAfterItWin) {
   ASSERT_EQ(carve("config " + path("options.toml")).code, 0);
   EXPECT_EQ(carve("build " + views() + " --config " + path("options.toml") + " --grid 16 -o " + path("out.ply") +

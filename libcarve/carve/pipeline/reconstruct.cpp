@@ -41,6 +41,7 @@ std::vector<Field> fields(PipelineOptions& options) {
   add_fields(all, "drawing", options.drawing);
   add_fields(all, "align", options.align);
   add_fields(all, "smooth", options.smooth);
+  add_fields(all, "refine", options.refine);
   add_fields(all, "texture", options.texture);
   add_fields(all, "atlas", options.atlas);
   return all;
@@ -81,7 +82,10 @@ Reconstruction reconstruct(std::map<View, Drawing> drawings, const PipelineOptio
     return crossings;
   });
   Mesh surface = stage("surface", [&] { return marching_cubes(result.grid, crossings); });
-  result.mesh = stage("smooth", [&] { return smooth(std::move(surface), options.smooth, monitor); });
+  Mesh smoothed = stage("smooth", [&] { return smooth(std::move(surface), options.smooth, monitor); });
+  RefinedMesh fine = stage("refine", [&] { return refine(std::move(smoothed), options.refine, monitor); });
+  result.mesh = std::move(fine.mesh);
+  result.refinement = std::move(fine.steps);
   result.topology = stage("check", [&] { return topology(result.mesh); });
   if (options.texture.arm == TextureArm::blend || options.texture.arm == TextureArm::best_view)
     result.textured = stage(

@@ -12,6 +12,7 @@
 #include "carve/core/options.h"
 #include "carve/image/read_image.h"
 #include "carve/mesh/topology.h"
+#include "carve/refine/refine.h"
 #include "carve/surface/smooth.h"
 #include "carve/texture/texture.h"
 
@@ -26,6 +27,7 @@ struct PipelineOptions {
   DrawingOptions drawing;
   AlignOptions align;
   SmoothOptions smooth;
+  RefineOptions refine;
   TextureOptions texture;  // automatic is none here: carve build knows what the output's format holds
   AtlasOptions atlas;
 };
@@ -33,6 +35,7 @@ struct PipelineOptions {
 template <class Visitor>
 void visit_fields(PipelineOptions& o, Visitor&& field) {
   field("intersections", o.intersections, "vertices at the exact crossing of grid line and drawn contour");
+  field("faces", o.refine.faces, 4, 1e9, "triangles to leave, by edge collapse; auto: all");
 }
 
 /// All of them, for flags, TOML and records; the section is empty for carve's own ("grid"), else the stage
@@ -48,6 +51,7 @@ struct Reconstruction {
   Mesh mesh;       // solid (mesh/topology.h), object units: longest side 1, centred on x and z, standing on y = 0
   VoxelGrid grid;  // the solid the mesh was made from
   ConsistencyResult consistency;  // its grid is empty: it became `grid`
+  std::vector<RefinementStep> refinement;
   Topology topology;
   TexturedMesh textured;  // the mesh again with its texture; empty if there was to be none
   ViewSet views;
@@ -59,7 +63,7 @@ struct Reconstruction {
 std::map<View, Drawing> read_drawings(const std::map<View, std::filesystem::path>& paths,
                                       const DrawingOptions& options = {});
 
-/// The whole way: align, carve, consistency, convex, surface, smooth, texture.
+/// The whole way: align, carve, consistency, convex, surface, smooth, refine, texture.
 /// \throws std::invalid_argument on options or views that cannot work; NoResult if nothing is left
 Reconstruction reconstruct(std::map<View, Drawing> drawings, const PipelineOptions& options = {},
                            const Monitor& monitor = {});
