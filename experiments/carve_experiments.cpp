@@ -13,6 +13,7 @@
 #include "run/cell.h"
 #include "run/heat_maps.h"
 #include "run/provenance.h"
+#include "run/renders.h"
 #include "run/runner.h"
 
 namespace {
@@ -151,12 +152,12 @@ int plot_command(const Arguments& arguments) {
   return kDone;
 }
 
-int heat_maps_command(const Arguments& arguments) {
+int pictures_command(const Arguments& arguments) {
   for (const std::string& name : specs_with_results(arguments)) {
     const fs::path folder = arguments.results / name;
     const Results found = load_results(folder);
-    for (const fs::path& picture : draw_heat_maps_of(folder, found.overview, found.records))
-      std::cout << picture.string() << '\n';
+    for (const auto draw : {draw_heat_maps_of, draw_renders_of})
+      for (const fs::path& picture : draw(folder, found.overview, found.records)) std::cout << picture.string() << '\n';
   }
   return kDone;
 }
@@ -228,7 +229,8 @@ int main(int argc, char** argv) {
   add("table", "write and print tables (Markdown, CSV, LaTeX) from results", table_command, false);
 
   add("plot", "draw figures from results (gnuplot)", plot_command, false);
-  add("heatmaps", "draw the methods' distances to the reference side by side", heat_maps_command, false);
+  add("heatmaps", "draw the methods' distances to the reference and their meshes side by side", pictures_command,
+      false);
   CLI::App* page = add("report", "write report.html and report.md from all results", report_command, false);
   page->add_option("--published", arguments.report.published, "folder of the thesis's tables; empty leaves them out")
       ->capture_default_str();

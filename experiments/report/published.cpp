@@ -224,6 +224,11 @@ PublishedTable table_4_2(const Rows& rows, const Rows& appendix, const Rows& cla
   return out;
 }
 
+// A total is set beside another only where it is of the same steps.
+bool all_steps(const Measured& measured, const std::string& object) {
+  return std::isfinite(measured(object, "volume") + measured(object, "mesh") + measured(object, "texture"));
+}
+
 PublishedTable table_4_3(const Rows& rows, const fs::path& results) {
   const Measured measured("table_4_3", results);
   PublishedTable out{"Table 4.3: seconds per step at grid 128", {{"object"}, {}}, {}};
@@ -250,7 +255,8 @@ PublishedTable table_4_3(const Rows& rows, const fs::path& results) {
         printed[column].push_back(said);
       }
       if (!measured.published().columns.contains(column)) continue;
-      const double value = average ? mean(ours[column]) : measured(object, column);
+      double value = average ? mean(ours[column]) : measured(object, column);
+      if (column == columns[3] && !average && !all_steps(measured, object)) value = std::nan("");
       if (!average && std::isfinite(value)) ours[column].push_back(value);
       out.table.rows.back().push_back({std::isfinite(value) ? short_text(value) : "–"});
       out.table.rows.back().push_back(

@@ -71,13 +71,19 @@ Table::Entry entry_of(const std::vector<Record>& records, const std::string& row
   return entry;
 }
 
+// Means are over the rows of all methods that have any result: one that never works must not cost the others theirs.
 void summarise(Table& table) {
   std::vector<std::vector<double>> columns(table.columns.size());
+  std::vector<bool> works(columns.size(), false);
+  for (const Table::Row& row : table.rows)
+    for (std::size_t c = 0; c < columns.size(); ++c) works[c] = works[c] || row.entries[c].value;
   for (const Table::Row& row : table.rows) {
-    if (!std::all_of(row.entries.begin(), row.entries.end(), [](const Table::Entry& e) { return e.value.has_value(); }))
-      continue;
+    bool complete = !row.entries.empty();
+    for (std::size_t c = 0; c < columns.size(); ++c) complete = complete && (row.entries[c].value || !works[c]);
+    if (!complete || std::none_of(works.begin(), works.end(), [](bool any) { return any; })) continue;
     ++table.complete_rows;
-    for (std::size_t c = 0; c < columns.size(); ++c) columns[c].push_back(*row.entries[c].value);
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      if (works[c]) columns[c].push_back(*row.entries[c].value);
   }
   const auto base = std::find(table.columns.begin(), table.columns.end(), table.baseline) - table.columns.begin();
   for (std::size_t c = 0; c < columns.size(); ++c) {
@@ -113,13 +119,23 @@ std::string difference_text(const PairedDifference& d, Direction better) {
 std::vector<std::string> notes_of(const Table& table) {
   std::vector<std::string> notes;
   for (std::size_t c = 0; c < table.columns.size(); ++c)
-    if (const auto& d = table.summaries[c].to_baseline)
+    if (const auto& d = table.summaries[c].to_baseline; d && d->pairs > 0)
       notes.push_back(table.columns[c] + " − " + table.baseline + ": " + difference_text(*d, table.metric.better));
-  std::set<std::string> reasons;
-  for (const Table::Row& row : table.rows)
-    for (std::size_t c = 0; c < row.entries.size(); ++c)
-      if (!row.entries[c].value && reasons.insert(table.columns[c] + row.entries[c].why).second)
-        notes.push_back("–: " + table.columns[c] + " on " + row.label + ": " + row.entries[c].why);
+  std::vector<std::pair<std::string, std::vector<std::string>>> missing;  // column and reason, rows
+  for (std::size_t c = 0; c < table.columns.size(); ++c)
+    for (const Table::Row& row : table.rows) {
+      if (row.entries[c].value) continue;
+      const std::string key = table.columns[c] + ": " + row.entries[c].why;
+      if (missing.empty() || missing.back().first != key) missing.push_back({key, {}});
+      missing.back().second.push_back(row.label);
+    }
+  constexpr std::size_t kNamed = 4;
+  for (auto& [key, rows] : missing) {
+    const std::size_t more = rows.size() - std::min(rows.size(), kNamed);
+    rows.resize(rows.size() - more);
+    notes.push_back("–: " + key + " (" + joined(rows, "; ") + (more ? " and " + std::to_string(more) + " more" : "") +
+                    ")");
+  }
   return notes;
 }
 
@@ -161,6 +177,7 @@ TextTable body_of(const Table& table) {
   };
   for (const Table::Row& row : table.rows) add(row);
   for (const bool is_mean : {true, false}) {
+    if (table.complete_rows == 0) break;
     Table::Row row{(is_mean ? "mean of " : "median of ") + std::to_string(table.complete_rows), {}};
     for (const Table::Summary& s : table.summaries) row.entries.push_back({is_mean ? s.mean : s.median, ""});
     add(row);

@@ -65,7 +65,7 @@ std::string latex(const TextTable& table) {
 }
 
 std::string short_text(double value) {
-  if (!std::isfinite(value)) return "-";
+  if (!std::isfinite(value)) return "–";
   char buffer[48];
   const double size = std::abs(value);
   const bool plain = size == 0 || (size >= 1e-4 && size < 1e7);

@@ -20,7 +20,7 @@ std::string markdown(const TextTable& table);
 std::string html(const TextTable& table);
 std::string latex(const TextTable& table);  // a tabular for booktabs
 
-/// Four significant digits, C locale; "-" for what is not finite.
+/// Four significant digits, C locale; a dash for what is not finite.
 std::string short_text(double value);
 /// The shortest text that reads back as the same value, C locale; `otherwise` for what is not finite.
 std::string exact_text(double value, const char* otherwise = "");

@@ -13,7 +13,7 @@ MethodOutput carve_arm(const MethodInput& input) {
   return {std::move(result.mesh), std::move(result.times)};
 }
 
-// Two methods that fail on purpose: what a sweep does with them is tested and shown in the documentation.
+// Methods that fail on purpose: what a sweep does with them is tested and shown in the documentation.
 MethodOutput crash(const MethodInput&) {
   std::raise(SIGSEGV);
   return {};
@@ -23,10 +23,15 @@ MethodOutput hang(const MethodInput&) {
   for (;;) std::this_thread::sleep_for(std::chrono::seconds(1));
 }
 
+MethodOutput hoard(const MethodInput&) {
+  for (std::vector<std::string> all;;) all.emplace_back(std::size_t{1} << 24, 'x');
+}
+
 constexpr Method kMethods[] = {
     {"carve", "the pipeline of carve build", carve_arm},
     {"crash", "dies of a segmentation fault: to see that a sweep survives it", crash},
     {"hang", "never ends: to see the time limit at work", hang},
+    {"hoard", "takes memory until there is none: to see the memory limit at work", hoard},
 };
 
 }  // namespace

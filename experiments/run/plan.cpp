@@ -66,11 +66,17 @@ Overview overview(const Spec& spec, const std::vector<Cell>& cells) {
              .methods = {},
              .sweep = {},
              .heat_map_models = expand_subjects(spec.heat_map_models),
+             .render_models = expand_subjects(spec.render_models),
              .metrics = {},
              .heat_map_range = spec.heat_map_range,
              .published = spec.published,
              .runs = static_cast<int>(cells.size())};
-  for (const std::string& name : spec.metrics) o.metrics.push_back(*find_metric(name));
+  for (const std::string& name : spec.metrics) {
+    if (name == kEveryStage)  // those known here in their order; the others when results are read
+      for (const RunMetric& metric : metrics())
+        if (metric.name.starts_with("seconds_") && metric.name != kEveryStage) o.metrics.push_back(metric);
+    o.metrics.push_back(*find_metric(name));
+  }
   for (const MethodSpec& method : spec.methods) o.methods.push_back(method.name);
   for (const auto& [field, values] : spec.sweep) o.sweep.push_back(field);
   return o;

@@ -55,6 +55,8 @@ class Reader {
       read_limits(node);
     else if (key == "heat_map")
       read_heat_map(node);
+    else if (key == "renders")
+      spec_.render_models = texts(node);
     else if (key == "published")
       read_published(node);
     else if (key == "method")

@@ -27,6 +27,7 @@ struct MethodSpec {
 ///   all_minus = ["intersections", "smooth.steps"]         # adds "all" and "all - FIELD" with that field switched off
 ///   limits   = { seconds = 120, megabytes = 4000 }        # of one run
 ///   heat_map = { models = ["dog"], range = 2.0 }          # % of the diagonal
+///   renders  = ["dog"]                                    # models whose drawings and meshes are pictured
 ///   published = { table = "table_4_3", method = "ours", columns = { total = "seconds" } }  # papers/published, column
 ///   -> metric
 ///   [[method]]
@@ -35,7 +36,7 @@ struct MethodSpec {
 struct Spec {
   std::string name;  // the file's
   std::string title;
-  std::vector<std::string> models, metrics, heat_map_models;
+  std::vector<std::string> models, metrics, heat_map_models, render_models;
   std::string baseline;
   std::vector<MethodSpec> methods;
   Settings options;

@@ -44,6 +44,7 @@ void visit(O& o, Visitor&& field) {
   field("runs", o.runs);
   field("heat_map_models", o.heat_map_models);
   field("heat_map_range", o.heat_map_range);
+  field("render_models", o.render_models);
   field("published", o.published.table);
   field("published_method", o.published.method);
   field("published_columns", o.published.columns);

@@ -44,7 +44,7 @@ struct Published {
 /// What a spec's results are about (overview.json beside its runs), so that tables and plots need nothing else.
 struct Overview {
   std::string spec, title, baseline;
-  std::vector<std::string> models, methods, sweep, heat_map_models;  // in the spec's order
+  std::vector<std::string> models, methods, sweep, heat_map_models, render_models;  // in the spec's order
   std::vector<RunMetric> metrics;
   double heat_map_range = 2;
   Published published = {};

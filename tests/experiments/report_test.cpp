@@ -62,7 +62,7 @@ TEST(Table, RowsFollowTheSpecTheBestIsBoldAFailureIsADashWithItsReason) {
   EXPECT_LT(text.find("| zebra"), text.find("| ant"));
   EXPECT_THAT(text, HasSubstr("| ant | 2.000 | **1.000** |"));
   EXPECT_THAT(text, HasSubstr("| zebra | **3.000** | – |"));
-  EXPECT_THAT(text, HasSubstr("new on zebra: crashed: Segmentation fault"));
+  EXPECT_THAT(text, HasSubstr("new: crashed: Segmentation fault (zebra)"));
   EXPECT_THAT(text, HasSubstr("what it is"));
   EXPECT_EQ(table.complete_rows, 1);
   EXPECT_THAT(to_latex(table), HasSubstr("\\textbf{1.000}"));

@@ -45,11 +45,11 @@ TEST_F(RunsTest, ACrashAndAHangCostTheirCellsOnly) {
   write("s.toml", std::string("models = [\"box\"]\nmetrics = [\"c2m_thesis\"]\nlimits = { seconds = 20 }\n") + kQuick +
                       "[[method]]\nname = \"good\"\n[[method]]\nname = \"bad\"\narm = \"crash\"\n");
   EXPECT_EQ(experiments("run " + path("s.toml") + " -o " + path("r")).code, 1);
-  EXPECT_THAT(table("r"), HasSubstr("bad on box: crashed: "));
+  EXPECT_THAT(table("r"), HasSubstr("| box | **"));
   write("s.toml", std::string("models = [\"box\"]\nmetrics = [\"c2m_thesis\"]\nlimits = { seconds = 1 }\n") + kQuick +
                       "[[method]]\nname = \"slow\"\narm = \"hang\"\n");
   EXPECT_EQ(experiments("run " + path("s.toml") + " -o " + path("h")).code, 1);
-  EXPECT_THAT(table("h"), HasSubstr("slow on box: stopped after 1 s"));
+  EXPECT_THAT(table("h"), HasSubstr("slow: stopped after 1 s (box)"));
 }
 
 TEST_F(RunsTest, ASweepKilledTwiceEndsWithTheTableOfOneThatWasNot) {
