@@ -7,7 +7,7 @@
 
 #include "carve/core/options.h"
 #include "eval/compare.h"
-#include "eval/render.h"
+#include "eval/shade.h"
 #include "eval/text.h"
 
 namespace carve {
@@ -38,7 +38,7 @@ double distance_at(const HeatMap& map, int t, const CameraAxes& axes, double rig
 
 // Grey without distances.
 Picture draw_panel(const HeatMap& map, const CameraAxes& axes, const Window& window, Ramp ramp, double range) {
-  return render(map.mesh, axes, window, [&](int t, double right, double up) {
+  return shade(map.mesh, axes, window, [&](int t, double right, double up) {
     return map.distances.empty() ? kClay : colour(ramp, distance_at(map, t, axes, right, up), range);
   });
 }

@@ -4,7 +4,7 @@
 
 #include "carve/image/read_image.h"
 #include "carve/mesh/mesh_io.h"
-#include "eval/render.h"
+#include "eval/shade.h"
 #include "eval/text.h"
 #include "run/figures.h"
 
@@ -42,7 +42,7 @@ Picture render_of(const Mesh& mesh, const CameraAxes& axes) {
   double extent = 0;
   const Window unit = window_around(axes, mesh.positions, 1000);
   extent = std::max(unit.width, unit.height) / 1000.0;
-  return render(mesh, axes, window_around(axes, mesh.positions, kPanel / std::max(extent, 1e-9)));
+  return shade(mesh, axes, window_around(axes, mesh.positions, kPanel / std::max(extent, 1e-9)));
 }
 
 struct Strip {

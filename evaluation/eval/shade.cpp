@@ -1,4 +1,4 @@
-#include "eval/render.h"
+#include "eval/shade.h"
 
 #include <Eigen/Geometry>
 #include <charconv>
@@ -53,7 +53,7 @@ Window window_around(const CameraAxes& axes, const std::vector<Vec3>& points, do
   return {width, height, middle.x() - width * step / 2, step, middle.y() + height * step / 2, -step};
 }
 
-Picture render(const Mesh& mesh, const CameraAxes& axes, const Window& window, const Paint& paint) {
+Picture shade(const Mesh& mesh, const CameraAxes& axes, const Window& window, const Paint& paint) {
   Window fine = window;
   fine.width *= kSupersampling, fine.height *= kSupersampling;
   fine.right_per_pixel /= kSupersampling, fine.up_per_pixel /= kSupersampling;

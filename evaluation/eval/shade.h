@@ -20,7 +20,7 @@ using Paint = std::function<Rgba(int t, double right, double up)>;
 
 /// One mesh from one side on white, anti-aliased, shaded so that shape shows and colour still reads; both sides of a
 /// triangle alike. Needs no display; the same picture on every machine and number of threads.
-Picture render(
+Picture shade(
     const Mesh& mesh, const CameraAxes& axes, const Window& window,
     const Paint& paint = [](int, double, double) { return kClay; });
 
