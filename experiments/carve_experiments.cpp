@@ -63,11 +63,11 @@ int plan_command(const Arguments& arguments) {
 
 int run_command(const Arguments& arguments) {
   int failed = 0;
+  export_commit();
   for (const fs::path& path : arguments.specs) {
     const Spec spec = read_spec(path);
     const std::vector<Cell> all = plan(spec);
     const std::vector<Cell> cells = shard_of(all, arguments.shard);
-    export_commit();
     fs::create_directories(arguments.results / spec.name);
     write_file(arguments.results / spec.name / kOverviewFile,
                [&](std::ostream& out) { out << to_json(overview(spec, all)); });

@@ -102,7 +102,10 @@ void run_cell(const fs::path& results, const std::string& spec, const Cell& cell
   fs::create_directories(folder);
   for (const auto& [view, picture] : input.pictures) write_png(folder / (std::string(name(view)) + ".png"), picture);
   write_mesh(folder / "mesh.ply", output.mesh);
-  write_mesh(folder / "mesh.glb", output.mesh);
+  if (output.textured.texture.empty())
+    write_mesh(folder / "mesh.glb", output.mesh);
+  else
+    write_textured_mesh(folder / "mesh.glb", output.textured);
   store_record(results, cell, record);  // last: its presence says that all is there
 }
 

@@ -10,7 +10,7 @@ namespace {
 // The library's way, with all its options: every variant that options can state.
 MethodOutput carve_arm(const MethodInput& input) {
   Reconstruction result = reconstruct(input.drawings, input.options.pipeline);
-  return {std::move(result.mesh), std::move(result.times)};
+  return {std::move(result.mesh), std::move(result.textured), std::move(result.times)};
 }
 
 // Methods that fail on purpose: what a sweep does with them is tested and shown in the documentation.

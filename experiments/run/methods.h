@@ -17,7 +17,8 @@ struct MethodInput {
 
 struct MethodOutput {
   Mesh mesh;
-  std::vector<StageTime> times;
+  TexturedMesh textured = {};  // the same with colours; without a texture if the method makes none
+  std::vector<StageTime> times = {};
 };
 
 /// One way from drawings to a mesh. A new variant is one function and one line in the table.

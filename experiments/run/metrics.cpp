@@ -65,6 +65,7 @@ std::vector<RunMetric> all_metrics() {
       {"seconds_intersections", "marching intersections", "s", Direction::lower},
       {"seconds_surface", "marching cubes", "s", Direction::lower},
       {"seconds_smooth", "smoothing", "s", Direction::lower},
+      {"seconds_refine", "remeshing, smoothing of the shape, decimation", "s", Direction::lower},
       {"seconds_check", "checking that the mesh is closed and manifold", "s", Direction::lower},
       {"megabytes", "largest resident memory of the run's process, synthesis and evaluation included", "MB",
        Direction::lower},
