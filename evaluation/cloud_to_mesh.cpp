@@ -18,6 +18,14 @@ struct Arguments {
   bool json = false, split = false;
 };
 
+Row measured(const fs::path& file, const Reference& reference) {
+  if (auto cloud = PlyCloud::open(file))
+    return {file.string(), cloud->size(), 0, scores(reference.compare(*cloud), reference)};
+  const Mesh mesh = read_mesh(file);
+  const Comparison comparison = about(file, [&] { return reference.compare(mesh); });
+  return {file.string(), mesh.positions.size(), mesh.triangles.size(), scores(comparison, reference)};
+}
+
 int compare(const Arguments& arguments) {
   check("", arguments.options);
   const Reference reference =
@@ -27,10 +35,8 @@ int compare(const Arguments& arguments) {
   std::vector<Row> rows;
   std::vector<Stage> stages;
   for (const fs::path& file : arguments.compared) {
-    const Mesh mesh = read_mesh(file);
-    const Comparison comparison = about(file, [&] { return reference.compare(mesh); });
-    rows.push_back({file.string(), mesh.positions.size(), mesh.triangles.size(), scores(comparison, reference)});
-    if (arguments.split) stages.push_back({file.stem().string(), mesh});
+    rows.push_back(measured(file, reference));
+    if (arguments.split) stages.push_back({file.stem().string(), read_mesh(file)});
   }
   if (!arguments.csv.empty()) write_file(arguments.csv, [&](std::ostream& out) { write_csv(out, head, rows); });
   if (arguments.json)
@@ -46,7 +52,7 @@ int compare(const Arguments& arguments) {
 int main(int argc, char** argv) {
   Arguments arguments;
   CLI::App app("Distances and other metrics of meshes or clouds to a reference mesh.", "cloud_to_mesh");
-  app.add_option("compared", arguments.compared, "meshes, or PLY clouds: .ply .obj .off .stl .glb")
+  app.add_option("compared", arguments.compared, "meshes: .ply .obj .off .stl .glb; or clouds: binary .ply of any size")
       ->required()
       ->type_name("FILE");
   add_reference_flag(app, arguments.reference);

@@ -16,15 +16,60 @@ namespace carve {
 namespace {
 
 // Compensated (Neumaier), so that a million equal distances have that distance as their mean.
-template <class Term>
-double sum(const std::vector<double>& values, Term term) {
-  double total = 0, lost = 0;
-  for (const double value : values) {
-    const double next = term(value), grown = total + next;
-    lost += std::abs(total) >= std::abs(next) ? (total - grown) + next : (next - grown) + total;
-    total = grown;
+class Sum {
+ public:
+  void add(double value) {
+    const double grown = total_ + value;
+    lost_ += std::abs(total_) >= std::abs(value) ? (total_ - grown) + value : (value - grown) + total_;
+    total_ = grown;
   }
-  return total + lost;
+  double mean(std::size_t count) const { return (total_ + lost_) / static_cast<double>(count); }
+
+ private:
+  double total_ = 0, lost_ = 0;
+};
+
+// `each` calls back with every value, always in the same order.
+template <class Each>
+double mean_of(const Each& each, std::size_t count) {
+  Sum sum;
+  each([&](double x) { sum.add(x); });
+  return sum.mean(count);
+}
+
+// About the mean, which is taken off first: no cancellation where the deviation is small beside the mean.
+template <class Each>
+double deviation_of(const Each& each, double mean, std::size_t count) {
+  Sum sum;
+  each([&](double x) { sum.add((x - mean) * (x - mean)); });
+  return std::sqrt(sum.mean(count));
+}
+
+template <class Each>
+Distances summarise_each(const Each& each, std::size_t count) {
+  Distances d;
+  Sum length, square;
+  each([&](double x) {
+    length.add(x);
+    square.add(x * x);
+    d.max = std::max(d.max, x);
+  });
+  d.mean = length.mean(count);
+  d.mean_square = square.mean(count);
+  d.deviation = deviation_of(each, d.mean, count);
+  return d;
+}
+
+template <class Each>
+void summarise_signed(Comparison& comparison, const Each& each, std::size_t count) {
+  comparison.signed_mean = mean_of(each, count);
+  comparison.signed_deviation = deviation_of(each, comparison.signed_mean, count);
+}
+
+auto all_of(const std::vector<double>& values) {
+  return [&values](const auto& body) {
+    for (const double value : values) body(value);
+  };
 }
 
 std::vector<double> lengths(const std::vector<Nearest>& nearest) {
@@ -43,7 +88,7 @@ double normal_agreement(const Samples& samples, const Mesh& from, const std::vec
   std::vector<double> cosines(nearest.size());
   for (std::size_t i = 0; i < nearest.size(); ++i)
     cosines[i] = std::abs(normal(from, samples.triangles[i]).dot(normal(to, nearest[i].triangle)));
-  return sum(cosines, [](double c) { return c; }) / static_cast<double>(cosines.size());
+  return mean_of(all_of(cosines), cosines.size());
 }
 
 // A point is a triangle without extent: distances to a cloud are those to such a mesh.
@@ -79,24 +124,29 @@ double box_diagonal(const Mesh& mesh) {
 }
 
 double Distances::percentile(double p) const {
-  if (sorted.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const double rank = p / 100 * static_cast<double>(sorted.size() - 1);
+  const std::size_t size = spilled ? spilled->size() : sorted.size();
+  if (size == 0) return std::numeric_limits<double>::quiet_NaN();
+  const auto ranked = [&](std::size_t rank) { return spilled ? absolute_of_rank(*spilled, rank) : sorted[rank]; };
+  const double rank = p / 100 * static_cast<double>(size - 1);
   const auto below = static_cast<std::size_t>(rank);
-  const double above = sorted[std::min(below + 1, sorted.size() - 1)];
-  return sorted[below] + (rank - static_cast<double>(below)) * (above - sorted[below]);
+  const double low = ranked(below), above = ranked(std::min(below + 1, size - 1));
+  return low + (rank - static_cast<double>(below)) * (above - low);
 }
 
 double Distances::share_within(double tolerance) const {
+  if (spilled) {
+    std::size_t within = 0;
+    spilled->each([&](double x) { within += std::abs(x) <= tolerance; });
+    return static_cast<double>(within) / static_cast<double>(spilled->size());
+  }
   const auto end = std::upper_bound(sorted.begin(), sorted.end(), tolerance);
   return static_cast<double>(end - sorted.begin()) / static_cast<double>(sorted.size());
 }
 
 Distances summarise(std::vector<double> unsigned_distances) {
-  Distances d{std::move(unsigned_distances)};
-  const auto count = static_cast<double>(d.sorted.size());
-  d.mean = sum(d.sorted, [](double x) { return x; }) / count;
-  d.mean_square = sum(d.sorted, [](double x) { return x * x; }) / count;
-  std::sort(d.sorted.begin(), d.sorted.end());
+  Distances d = summarise_each(all_of(unsigned_distances), unsigned_distances.size());
+  std::sort(unsigned_distances.begin(), unsigned_distances.end());
+  d.sorted = std::move(unsigned_distances);
   return d;
 }
 
@@ -114,6 +164,7 @@ Comparison Reference::compare(const Mesh& compared) const {
   Comparison result;
   const std::vector<Nearest> vertices = distance_.nearest(compared.positions);
   result.vertex_signed = signed_distances(compared.positions, vertices, mesh_, options_.sign);
+  summarise_signed(result, all_of(result.vertex_signed), result.vertex_signed.size());
   result.vertex = summarise(lengths(vertices));
 
   const auto seed = static_cast<unsigned>(options_.seed);
@@ -140,6 +191,27 @@ Comparison Reference::compare(const Mesh& compared) const {
     result.volume_iou = volume_iou(compared, mesh_, options_.iou_resolution);
   if (options_.self_intersections)
     result.self_intersections = static_cast<std::int64_t>(self_intersections(compared).size());
+  return result;
+}
+
+Comparison Reference::compare(PlyCloud& compared, std::size_t piece) const {
+  const Samples on_reference = sample_surface(mesh_, options_.samples, static_cast<unsigned>(options_.seed));
+  std::vector<double> to_compared(on_reference.points.size(), std::numeric_limits<double>::infinity());
+  const auto spill = std::make_shared<Spill>();
+  Mesh part;
+  for (part.positions = compared.next(piece); !part.positions.empty(); part.positions = compared.next(piece)) {
+    spill->append(signed_distances(part.positions, distance_.nearest(part.positions), mesh_, options_.sign));
+    const std::vector<Nearest> backward = MeshDistance(points_as_triangles(part)).nearest(on_reference.points);
+    for (std::size_t i = 0; i < backward.size(); ++i) to_compared[i] = std::min(to_compared[i], backward[i].distance);
+  }
+  Comparison result;
+  const auto each = [&](const auto& body) { spill->each(body); };
+  summarise_signed(result, each, spill->size());
+  result.vertex =
+      summarise_each([&](const auto& body) { spill->each([&](double x) { body(std::abs(x)); }); }, spill->size());
+  result.vertex.spilled = spill;
+  result.to_reference = result.vertex;
+  result.to_compared = summarise(std::move(to_compared));
   return result;
 }
 

@@ -1,11 +1,14 @@
 #pragma once
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "carve/mesh/ply_cloud.h"
 #include "carve/mesh/topology.h"
 #include "eval/mesh_distance.h"
 #include "eval/signed_distance.h"
+#include "eval/spill.h"
 
 namespace carve {
 
@@ -27,10 +30,11 @@ void visit_fields(CompareOptions& o, Visitor&& field) {
   field("sign", o.sign, "how inside is told from outside");
 }
 
-/// Unsigned distances, ascending, summed once.
+/// Unsigned distances: their sums, and their ranks wherever they lie. Sums are taken in the order given.
 struct Distances {
-  std::vector<double> sorted;
-  double mean = 0, mean_square = 0;
+  double mean = 0, mean_square = 0, deviation = 0, max = 0;
+  std::vector<double> sorted = {};                 // ascending; empty if they are
+  std::shared_ptr<const Spill> spilled = nullptr;  // in a file, in the order given and signed
 
   double percentile(double p) const;  // linear between ranks, p in [0, 100]; NaN without values
   double share_within(double tolerance) const;
@@ -40,7 +44,8 @@ Distances summarise(std::vector<double> unsigned_distances);
 /// What the metrics (eval/metrics.h) are read from. A part that the inputs do not allow is absent: a cloud has no
 /// area, a surface with holes no volume.
 struct Comparison {
-  std::vector<double> vertex_signed;       // per vertex of the compared mesh, in its order
+  std::vector<double> vertex_signed;  // per vertex of the compared mesh, in its order; none of a PlyCloud
+  double signed_mean = 0, signed_deviation = 0;
   Distances vertex;                        // the same, unsigned
   std::optional<Distances> to_reference;   // from samples of the compared mesh; of a cloud, from its points
   std::optional<Distances> to_compared;    // from samples of the reference
@@ -59,6 +64,9 @@ class Reference {
   /// \throws std::invalid_argument: a reference without triangles or area, options out of range
   explicit Reference(Mesh mesh, const CompareOptions& options = {});
   Comparison compare(const Mesh& compared) const;
+  /// The same figures, bit for bit, of a cloud that need not fit into memory; `piece` points of it do.
+  /// \throws IoError as PlyCloud, or if the disk has no 8 bytes a point for the distances
+  Comparison compare(PlyCloud& compared, std::size_t piece = 1 << 20) const;
 
   const Mesh& mesh() const { return mesh_; }
   double diagonal() const { return diagonal_; }  // of the bounding box of the triangles' corners

@@ -12,26 +12,6 @@ using C = const Comparison&;
 using Value = std::optional<double>;
 constexpr double kNone = 0;
 
-double signed_mean(C c) {
-  double total = 0;
-  for (const double d : c.vertex_signed) total += d;
-  return total / static_cast<double>(c.vertex_signed.size());
-}
-
-// About the mean, which is taken off first: no cancellation where the deviation is small beside the mean.
-double signed_deviation(C c) {
-  const double mean = signed_mean(c);
-  double total = 0;
-  for (const double d : c.vertex_signed) total += (d - mean) * (d - mean);
-  return std::sqrt(total / static_cast<double>(c.vertex_signed.size()));
-}
-
-double unsigned_deviation(C c) {
-  double total = 0;
-  for (const double d : c.vertex.sorted) total += (d - c.vertex.mean) * (d - c.vertex.mean);
-  return std::sqrt(total / static_cast<double>(c.vertex.sorted.size()));
-}
-
 bool two_way(C c) { return c.to_reference && c.to_compared; }
 
 double harmonic(double precision, double recall) {
@@ -52,11 +32,11 @@ const Metric kMetrics[] = {
   {"c2m_thesis", "mean of d(v, R) over v in V (CloudCompare's C2M, unsigned)", Unit::length, Better::lower, false,
    [](C c, double) -> Value { return c.vertex.mean; }},
   {"c2m_std", "standard deviation of d(v, R), population", Unit::length, Better::lower, false,
-   [](C c, double) -> Value { return unsigned_deviation(c); }},
+   [](C c, double) -> Value { return c.vertex.deviation; }},
   {"c2m_signed_mean", "mean of d(v, R), negative inside R", Unit::length, Better::zero, false,
-   [](C c, double) -> Value { return signed_mean(c); }},
+   [](C c, double) -> Value { return c.signed_mean; }},
   {"c2m_signed_std", "standard deviation of the signed d(v, R), population", Unit::length, Better::lower, false,
-   [](C c, double) -> Value { return signed_deviation(c); }},
+   [](C c, double) -> Value { return c.signed_deviation; }},
   {"c2m_rms", "sqrt(mean of d(v, R)^2)", Unit::length, Better::lower, false,
    [](C c, double) -> Value { return std::sqrt(c.vertex.mean_square); }},
   {"c2m_p50", "median of d(v, R)", Unit::length, Better::lower, false,
@@ -68,7 +48,7 @@ const Metric kMetrics[] = {
   {"c2m_p99", "99th percentile of d(v, R)", Unit::length, Better::lower, false,
    [](C c, double) -> Value { return c.vertex.percentile(99); }},
   {"c2m_max", "max of d(v, R)", Unit::length, Better::lower, false,
-   [](C c, double) -> Value { return c.vertex.sorted.back(); }},
+   [](C c, double) -> Value { return c.vertex.max; }},
   {"accuracy", "mean of d(x, R) over x in S(C); of a cloud, over its points", Unit::length, Better::lower, false,
    [](C c, double) { return of(c.to_reference, [](const Distances& d) { return d.mean; }); }},
   {"completeness", "mean of d(y, C) over y in S(R)", Unit::length, Better::lower, false,
@@ -78,8 +58,8 @@ const Metric kMetrics[] = {
   {"chamfer_l2sq", "mean of d(x, R)^2 + mean of d(y, C)^2", Unit::squared_length, Better::lower, false,
    [](C c, double) { return two_way(c) ? Value(c.to_reference->mean_square + c.to_compared->mean_square) : Value(); }},
   {"hausdorff", "max of d(x, R) and d(y, C) over the samples and V: a lower bound", Unit::length, Better::lower, false,
-   [](C c, double) { return two_way(c) ? Value(std::max({c.to_reference->sorted.back(), c.to_compared->sorted.back(),
-                                                         c.vertex.sorted.back()})) : Value(); }},
+   [](C c, double) { return two_way(c) ? Value(std::max({c.to_reference->max, c.to_compared->max,
+                                                         c.vertex.max})) : Value(); }},
   {"precision", "share of S(C) with d(x, R) <= t", Unit::share, Better::higher, true,
    [](C c, double t) { return of(c.to_reference, [t](const Distances& d) { return d.share_within(t); }); }},
   {"recall", "share of S(R) with d(y, C) <= t", Unit::share, Better::higher, true,

@@ -82,7 +82,8 @@ inline void store_triangle(TriangleLeaf& leaf, int lane, const Vec3& a, const Ve
   const Float8 bc_x = bx - t_bc * leaf.bc[0], bc_y = y - t_bc * leaf.bc[1];
   const Float8 bc_side = bc_x * bc_x + bc_y * bc_y;
   side = bc_side < side ? bc_side : side;
-  const auto inside = (y >= zero) & (leaf.ac[0] * y <= leaf.ac[1] * x) & (leaf.bc[0] * y >= leaf.bc[1] * bx);
+  // Not y >= 0: a triangle that is a point or a segment has no inside, and on the line of a and b the side tells.
+  const auto inside = (y > zero) & (leaf.ac[0] * y <= leaf.ac[1] * x) & (leaf.bc[0] * y >= leaf.bc[1] * bx);
   return z * z + (inside ? zero : side);
 }
 

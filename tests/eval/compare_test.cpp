@@ -5,9 +5,11 @@
 #include <sstream>
 
 #include "carve/core/parallel.h"
+#include "carve/mesh/ply.h"
 #include "eval/meshes.h"
 #include "eval/metrics.h"
 #include "eval/report.h"
+#include "temporary_folder.h"
 
 namespace carve {
 namespace {
@@ -138,6 +140,36 @@ TEST(Compare, ACloudHasDistancesOnly) {
   EXPECT_GT(value(all, "completeness"), 0.3);
   for (const char* none : {"volume_iou", "normal_consistency", "closed", "genus", "self_intersections"})
     EXPECT_FALSE(find(all, none).value) << none;
+}
+
+// Every figure bit for bit, however small the pieces.
+TEST_P(Compare, ACloudReadInPiecesHasTheFiguresOfTheWhole) {
+  const TemporaryFolder folder;
+  const Mesh cloud{b_.positions, {}};
+  write_ply(folder / "cloud.ply", cloud, {}, {.strict = false});
+  const Reference reference(a_, few());
+  const auto whole = scores(reference.compare(cloud), reference);
+  for (const std::size_t piece : {97ul, cloud.positions.size(), 1ul << 20}) {
+    auto file = PlyCloud::open(folder / "cloud.ply");
+    const auto pieces = scores(reference.compare(*file, piece), reference);
+    ASSERT_EQ(pieces.size(), whole.size());
+    for (std::size_t i = 0; i < whole.size(); ++i)
+      EXPECT_EQ(pieces[i].value, whole[i].value) << whole[i].name() << " in pieces of " << piece;
+  }
+}
+
+TEST(Spill, RanksAbsoluteValuesAsSortingDoes) {
+  std::mt19937 random(7);
+  std::vector<double> values = {0, -0.0, 1e-310, -1e-310, 1e300, 3, -3, 3};
+  for (int i = 0; i < 1000; ++i)
+    values.push_back(random_point(random).x() * std::pow(10, static_cast<int>(random() % 9)));
+  Spill spill;
+  spill.append(std::span(values).first(10));
+  spill.append(std::span(values).subspan(10));
+  for (double& value : values) value = std::abs(value);
+  std::sort(values.begin(), values.end());
+  for (std::size_t rank = 0; rank < values.size(); rank += 13) EXPECT_EQ(absolute_of_rank(spill, rank), values[rank]);
+  EXPECT_EQ(absolute_of_rank(spill, values.size() - 1), values.back());
 }
 
 TEST(Compare, PercentilesInterpolateBetweenRanks) {

@@ -99,6 +99,22 @@ TEST_P(Distance, OfManyTrianglesAtOnePlaceIsTheLowestIndex) {
   expect_brute_force(random_points(50, GetParam(), 2), mesh);
 }
 
+// On a lattice points lie exactly in the planes and on the lines of triangles that are points or segments.
+TEST_P(Distance, IsTheBruteForceMinimumOnALattice) {
+  std::mt19937 random(GetParam());
+  const auto corner = [&] { return Vec3(random() % 9 / 8.0, random() % 9 / 8.0, random() % 9 / 8.0); };
+  Mesh mesh;
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 a = corner(), b = corner();
+    const Vec3 c[] = {a, b, a + 0.25 * (b - a), corner()};
+    for (const Vec3& p : {a, random() % 2 ? a : b, c[random() % 4]}) mesh.positions.push_back(p);
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  std::vector<Vec3> points;
+  for (int i = 0; i < 300; ++i) points.push_back(corner());
+  expect_brute_force(points, mesh);
+}
+
 TEST_P(Distance, OfCornersIsZero) {
   const Mesh mesh = rubble(400, GetParam());
   for (const Nearest& n : MeshDistance(mesh).nearest(mesh.positions)) ASSERT_EQ(n.distance, 0);

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 
+#include "carve/mesh/ply_cloud.h"
 #include "carve/mesh/ply_header.h"
 
 namespace carve::formats {
@@ -89,8 +91,9 @@ class TextSource {
 template <class Source>
 class BodyReader {
  public:
-  BodyReader(const std::string& path, const PlyHeader& header, Source source)
-      : path_(path), header_(header), source_(source) {}
+  // `first`: how many of the only element's items stand before this body.
+  BodyReader(const std::string& path, const PlyHeader& header, Source source, std::size_t first = 0)
+      : path_(path), header_(header), source_(source), first_(first) {}
 
   Mesh read() {
     for (const PlyElement& element : header_.elements) read(element);
@@ -195,13 +198,14 @@ class BodyReader {
 
   [[noreturn]] void fail(const PlyElement& element, std::size_t index, const PlyProperty& property,
                          const std::string& why) {
-    throw IoError(path_,
-                  excerpt(element.name) + " " + std::to_string(index) + ": " + excerpt(property.name) + " " + why);
+    throw IoError(path_, excerpt(element.name) + " " + std::to_string(first_ + index) + ": " + excerpt(property.name) +
+                             " " + why);
   }
 
   const std::string& path_;
   const PlyHeader& header_;
   Source source_;
+  std::size_t first_;
   Mesh mesh_;
   std::vector<int> corners_;
 };
@@ -231,3 +235,64 @@ Mesh read_ply(const std::string& path, std::string_view bytes) {
 }
 
 }  // namespace carve::formats
+
+namespace carve {
+
+struct PlyCloud::State {
+  std::string path;
+  std::ifstream file;
+  formats::PlyHeader piece;  // its vertex element counts what is read at a time
+  std::size_t size = 0, at = 0, bytes_a_point = 0;
+};
+
+std::optional<PlyCloud> PlyCloud::open(const std::filesystem::path& path) {
+  auto state = std::make_unique<State>();
+  state->path = path.string();
+  state->file.open(path, std::ios::binary);
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  std::string head(std::min<std::uintmax_t>(size, 1 << 16), '\0');
+  if (error || !state->file.read(head.data(), static_cast<std::streamsize>(head.size()))) return std::nullopt;
+  if (!head.starts_with("ply") || head.find("end_header") == std::string::npos) return std::nullopt;
+  formats::TextReader text(state->path, head, false);
+  state->piece = formats::read_header(text);
+  const std::size_t begin = head.size() - text.rest().size();
+  std::erase_if(state->piece.elements, [](const formats::PlyElement& element) { return element.count == 0; });
+  if (state->piece.encoding == formats::PlyEncoding::text || state->piece.elements.size() != 1 ||
+      state->piece.elements[0].name != "vertex")
+    return std::nullopt;
+  for (const formats::PlyProperty& property : state->piece.elements[0].properties) {
+    if (property.count) return std::nullopt;
+    state->bytes_a_point += formats::size_of(property.type);
+  }
+  formats::check_counts(state->path, state->piece, size - begin);
+  state->size = state->piece.elements[0].count;
+  state->file.seekg(static_cast<std::streamoff>(begin));
+  return PlyCloud(std::move(state));
+}
+
+PlyCloud::PlyCloud(std::unique_ptr<State> state) : state_(std::move(state)) {}
+PlyCloud::~PlyCloud() = default;
+PlyCloud::PlyCloud(PlyCloud&&) noexcept = default;
+
+std::size_t PlyCloud::size() const { return state_->size; }
+
+std::vector<Vec3> PlyCloud::next(std::size_t most) {
+  State& s = *state_;
+  const std::size_t count = std::min(most, s.size - s.at);
+  std::string bytes(count * s.bytes_a_point, '\0');
+  if (!s.file.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
+    throw IoError(s.path, formats::ends_at("vertex", s.at, s.size));
+  s.piece.elements[0].count = count;
+  formats::TextReader none(s.path, {}, false);
+  const auto points = [&](auto source) {
+    return formats::BodyReader<decltype(source)>(s.path, s.piece, source, s.at).read().positions;
+  };
+  std::vector<Vec3> read = s.piece.encoding == formats::PlyEncoding::little
+                               ? points(formats::BinarySource<false>(none, bytes))
+                               : points(formats::BinarySource<true>(none, bytes));
+  s.at += count;
+  return read;
+}
+
+}  // namespace carve
