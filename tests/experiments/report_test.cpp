@@ -2,8 +2,11 @@
 
 #include <cmath>
 
+#include "carve/surface/marching_cubes.h"
 #include "report/compare.h"
+#include "report/display_mesh.h"
 #include "report/table.h"
+#include "shapes.h"
 
 namespace carve::experiments {
 namespace {
@@ -75,6 +78,38 @@ TEST(Table, MeansAreOverTheRowsThatEveryMethodHas) {
                  overview().metrics[0]);
   EXPECT_EQ(table.summaries[0].mean, 2);
   EXPECT_EQ(table.summaries[1].mean, 1);
+}
+
+TEST(Summary, ARowAMethodAColumnAMetricWithTheChangeFromTheBaseline) {
+  const TextTable table = summary(overview(), {record("ant", "base", 2), record("ant", "new", 1),
+                                               record("zebra", "base", 4), record("zebra", "new", 2)});
+  EXPECT_EQ(table.header, (std::vector<std::string>{"method", "error, % ↓"}));
+  ASSERT_EQ(table.rows.size(), 2u);
+  EXPECT_EQ(table.rows[0][1].text, "3.000");
+  EXPECT_EQ(table.rows[1][1].text, "1.500 (-50\u00a0%)");
+  EXPECT_TRUE(table.rows[1][1].best);
+  EXPECT_THAT(latex(table), HasSubstr("\\textbf{1.500 (-50~\\%)}"));
+}
+
+TEST(Table, AMethodThatNeverWorksLeavesTheOthersTheirMeans) {
+  const Table table =
+      make_table(overview(), {record("ant", "base", 2), record("ant", "new", 0, "crashed")}, overview().metrics[0]);
+  EXPECT_EQ(table.complete_rows, 1);
+  EXPECT_EQ(table.summaries[0].mean, 2);
+}
+
+TEST(DisplayMesh, AMeshIsPackedWithinItsTrianglesAndTheSameWayEveryTime) {
+  const Shape shape = ball();
+  VoxelGrid grid = grid_over(Vec3(-0.5, 0, -0.5), Vec3(0.5, 1, 0.5), 40);
+  for (int z = 0; z < grid.size().z(); ++z)
+    for (int y = 0; y < grid.size().y(); ++y)
+      for (int x = 0; x < grid.size().x(); ++x) grid.set(x, y, z, shape.inside(grid.centre(x, y, z)));
+  const Mesh mesh = marching_cubes(grid);
+  const std::string all = packed(mesh, 100000), few = packed(mesh, 300);
+  EXPECT_EQ(all, packed(mesh, 100000));
+  EXPECT_LT(few.size(), all.size() / 3);
+  EXPECT_LT(static_cast<double>(all.size()), 6.0 * static_cast<double>(mesh.triangles.size()));
+  EXPECT_THROW(packed({}, 10), std::invalid_argument);
 }
 
 TEST(Compare, PairsRunsAndNamesWhatOnlyOneSideHas) {
