@@ -6,8 +6,8 @@
 #include "carve/core/error.h"
 #include "carve/hull/contours.h"
 #include "carve/hull/polyhedral_hull.h"
-#include "carve/mesh/topology.h"
 #include "carve/mesh/self_intersections.h"
+#include "carve/mesh/topology.h"
 #include "hull/polygons.h"
 #include "shapes.h"
 

@@ -12,9 +12,20 @@ struct ExactHull {
   std::vector<ExactPoint> points;
   std::vector<FacetPlane> planes;
   std::vector<FacetSide> sides;
+  std::string volume = {};  // as CGAL's methods tell it of their own result: "p/q"
 };
 
 ExactHull strips(const Silhouettes& silhouettes);
+ExactHull nef(const Silhouettes& silhouettes);  // the only Nef polyhedra of the project: compiling takes minutes
+ExactHull corefinement(const Silhouettes& silhouettes);  // \throws NoResult if CGAL cannot represent the result
+
+/// What a silhouette sweeps, as a closed mesh; it ends beyond the lattice. Coordinates are integers.
+struct Prism {
+  std::vector<std::array<std::int32_t, 3>> points;
+  std::vector<std::array<int, 3>> triangles;
+  std::vector<int> edge;  // per triangle: the contour edge, counted through the loops; -1: an end of the prism
+};
+Prism prism(const Silhouette& silhouette);
 
 /// A contour's edge with the inside on its left, in the silhouette's own two axes. An index of the list of all
 /// silhouettes' edges is a FacetSide's source.

@@ -55,7 +55,7 @@ Silhouettes without_straight_vertices(Silhouettes silhouettes) {
 }
 
 // An axis along which nothing is drawn hides nothing.
-void add_missing_axis(Silhouettes& silhouettes) {
+Silhouettes with_all_axes(Silhouettes silhouettes) {
   constexpr std::int32_t low = -1, high = kLattice + 1;
   for (int axis = 0; axis < 3; ++axis) {
     const auto is_given = [&](const Silhouette& s) { return s.axis == axis; };
@@ -63,6 +63,7 @@ void add_missing_axis(Silhouettes& silhouettes) {
     Silhouette all{axis, View::front, {{{low, low}, {high, low}, {high, high}, {low, high}}}};
     silhouettes.along.push_back(all);
   }
+  return silhouettes;
 }
 
 /// Corners of one vertex: those that turning around the point from facet to facet leads to.
@@ -164,7 +165,16 @@ std::vector<Vec3> positions(const ExactHull& hull, const Vertices& vertices, con
   return all;
 }
 
-PolyhedralHull rounded(ExactHull hull, const Silhouettes& silhouettes, bool with_volume) {
+struct Rounded {
+  std::vector<Vec3> positions;
+  std::vector<Triangle> triangles;
+  std::vector<std::array<int, 3>> corners;  // of the triangles
+  std::vector<int> sources;                 // of the triangles
+  int facets = 0, split_points = 0;
+};
+
+/// Triangles and vertices of linked facets; adds to the hull what parting needs.
+Rounded rounded(ExactHull& hull, const Silhouettes& silhouettes) {
   Vertices vertices(hull);
   Triangulation triangulation = triangulate_facets(hull.points, hull.planes, hull.sides);
   while (!triangulation.pinches.empty()) {
@@ -172,38 +182,81 @@ PolyhedralHull rounded(ExactHull hull, const Silhouettes& silhouettes, bool with
     vertices = Vertices(hull);
     triangulation = triangulate_facets(hull.points, hull.planes, hull.sides);
   }
-  const auto& triangles = triangulation.triangles;
-  const std::vector<ContourEdge> edges = contour_edges(silhouettes);
-
-  PolyhedralHull result;
-  result.mesh.positions = positions(hull, vertices, silhouettes, result.split_points);
-  for (const auto& corners : triangles) {
-    result.mesh.triangles.push_back({vertices.of(corners[0]), vertices.of(corners[1]), vertices.of(corners[2])});
+  Rounded result;
+  result.positions = positions(hull, vertices, silhouettes, result.split_points);
+  for (const auto& corners : triangulation.triangles) {
+    result.triangles.push_back({vertices.of(corners[0]), vertices.of(corners[1]), vertices.of(corners[2])});
     int source = hull.sides[corners[0]].source;
     for (const int corner : corners) source = std::min(source, hull.sides[corner].source);
-    const ContourEdge& edge = edges[source];
-    result.sources.push_back({silhouettes.along[edge.silhouette].view, edge.loop, edge.edge});
+    result.sources.push_back(source);
   }
+  result.corners = std::move(triangulation.triangles);
   std::vector<char> seen(hull.sides.size());
   for (int i = 0; i < static_cast<int>(hull.sides.size()); ++i) {
     result.facets += !seen[i];
     for (int k = i; !seen[k]; k = hull.sides[k].next) seen[k] = true;
   }
-  if (with_volume) result.volume = exact_volume(hull.points, hull.sides, triangles);
   return result;
+}
+
+ExactHull made_by(const Silhouettes& clean, HullMethod method) {
+  switch (method) {
+    case HullMethod::nef:
+      return nef(clean);
+    case HullMethod::corefinement:
+      return corefinement(clean);
+    case HullMethod::strips:
+      return strips(with_all_axes(clean));
+    default:
+      throw std::invalid_argument("a hull's method must be nef, corefinement or strips, got none");
+  }
 }
 
 }  // namespace
 
-PolyhedralHull polyhedral_hull(const Silhouettes& silhouettes, HullMethod method, bool exact_volume) {
+namespace hull {
+
+Prism prism(const Silhouette& silhouette) {
+  Silhouettes alone;
+  alone.along = {silhouette};
+  alone.unit = Vec3::Ones();
+  ExactHull swept = strips(with_all_axes(alone));
+  swept.sides = link_facets(swept.points, swept.planes, std::move(swept.sides));
+  const int edges = static_cast<int>(contour_edges(alone).size());
+  const Rounded mesh = rounded(swept, alone);
+  Prism result;
+  for (const Vec3& p : mesh.positions) {
+    const Vec3 integer = p.array().round();
+    result.points.push_back(
+        {static_cast<int>(integer.x()), static_cast<int>(integer.y()), static_cast<int>(integer.z())});
+  }
+  result.triangles = mesh.triangles;
+  for (const int source : mesh.sources) result.edge.push_back(source < edges ? source : -1);
+  return result;
+}
+
+}  // namespace hull
+
+PolyhedralHull polyhedral_hull(const Silhouettes& silhouettes, HullMethod method, bool with_volume) {
   check_silhouettes(silhouettes);
-  Silhouettes clean = without_straight_vertices(silhouettes);
-  add_missing_axis(clean);
-  if (method != HullMethod::strips) throw std::invalid_argument("not yet");
-  ExactHull hull = strips(clean);
+  const Silhouettes clean = without_straight_vertices(silhouettes);
+  ExactHull hull = made_by(clean, method);
   hull.sides = link_facets(hull.points, hull.planes, std::move(hull.sides));
   if (hull.sides.empty()) throw NoResult("the silhouettes' prisms have nothing in common");
-  return rounded(std::move(hull), clean, exact_volume);
+
+  Rounded mesh = rounded(hull, clean);
+  PolyhedralHull result;
+  const std::vector<ContourEdge> edges = contour_edges(clean);
+  for (const int source : mesh.sources) {
+    const ContourEdge& edge = edges[source];
+    result.sources.push_back({clean.along[edge.silhouette].view, edge.loop, edge.edge});
+  }
+  if (with_volume)
+    result.volume = hull.volume.empty() ? exact_volume(hull.points, hull.sides, mesh.corners) : hull.volume;
+  result.mesh = {std::move(mesh.positions), std::move(mesh.triangles)};
+  result.facets = mesh.facets;
+  result.split_points = mesh.split_points;
+  return result;
 }
 
 }  // namespace carve
