@@ -6,6 +6,7 @@
 #include <random>
 
 #include "carve/carving/carve_silhouettes.h"
+#include "carve/carving/part_contours.h"
 #include "carve/core/parallel.h"
 #include "carve/grid/shadow.h"
 #include "carve/mesh/topology.h"
@@ -181,6 +182,33 @@ TEST(Convex, SquarerOutlinesMakeSquarerSolids) {
     const double before = std::abs(solid.volume() - shape.volume);
     EXPECT_LT(std::abs(refined(solid, views).volume() - shape.volume), before) << exponent;
   }
+}
+
+double grown_share(const Shape& shape, int grid) {
+  const ViewSet views = aligned(shape, kThreeViews, {.pixels = 512});
+  const VoxelGrid solid = hull(views, grid);
+  std::array<Sections, 3> cuts;
+  std::array<std::vector<Drift>, 3> ways;
+  for (int axis = 0; axis < 3; ++axis) {
+    cuts[axis] = cut(solid, axis, views);
+    ways[axis] = drifts(cuts[axis], grid);
+  }
+  return grown(cuts, ways);
+}
+
+TEST(Convex, RoundThingsLookGrownAndBoxesBuilt) {
+  for (const int grid : {48, 96, 128}) {
+    EXPECT_GT(grown_share(ball(), grid), 0.5) << grid;
+    EXPECT_GT(grown_share(superellipsoid(Vec3(1, 0.7, 0.5), 2), grid), 0.4) << grid;
+    for (const Shape& shape : {box(), stairs(5), walled_stairs(3)}) EXPECT_LT(grown_share(shape, grid), -0.5) << grid;
+  }
+}
+
+TEST_P(ConvexTest, InSolidsThatLookGrownMoreIsRoundedInOthersNothingElse) {
+  const VoxelGrid parts = refined(hull_, views_, {.grown = 1.01}), all = refined(hull_, views_, {.grown = -1});
+  EXPECT_LE(all.count(), parts.count());
+  const VoxelGrid chosen = refined(hull_, views_);
+  EXPECT_TRUE(chosen == parts || chosen == all);
 }
 
 TEST(Convex, StraightThingsStayAsTheyAre) {

@@ -15,7 +15,10 @@
 namespace carve {
 namespace {
 
-constexpr double kFilled = 0.95;     // share of its contour that a section fills, if its box is what bounds it
+constexpr std::uint8_t kAllCorners = 15;
+constexpr double kFilled = 0.95;         // share of its contour that a section fills, if its box is what bounds it
+constexpr std::size_t kFewestGrown = 3;  // slices of a part whose outlines have a direction
+constexpr double kFilledGrown = 0.7;     // the same in a solid that looks grown
 constexpr double kConvex = 0.97;     // share of its convex hull that a convex section fills, for its voxels' corners
 constexpr float kTolerance = 1e-4f;  // a mirrored solid gives the mirrored result
 constexpr float kClearance = 0.02f;  // voxels between a crossing and the centres
@@ -72,11 +75,19 @@ class ConvexHull {
 class ContourField {
  public:
   ContourField(const VoxelGrid& solid, const ViewSet& views, const ConvexOptions& options) : size_(solid.size()) {
+    for (int axis = 0; axis < 3; ++axis) cuts_[axis] = cut(solid, axis, views);
+    std::array<std::vector<Drift>, 3> ways;
+    for (int axis = 0; axis < 3; ++axis) ways[axis] = drifts(cuts_[axis], size_.maxCoeff());
+    const bool all = grown(cuts_, ways) >= options.grown;
     for (int axis = 0; axis < 3; ++axis) {
-      cuts_[axis] = cut(solid, axis, views);
       const std::vector<int> exponents = part_exponents(cuts_[axis], size_.maxCoeff(), options);
-      for (const Section& s : cuts_[axis].sections) exponents_[axis].push_back(exponents[s.part]);
-      keep_unfilled(axis);
+      for (std::size_t s = 0; s < ways[axis].size(); ++s) {
+        const int part = cuts_[axis].sections[s].part, exponent = exponents[part];
+        const bool by_corners = all && exponent == kRectangle && cuts_[axis].parts[part].size() >= kFewestGrown;
+        exponents_[axis].push_back(by_corners ? kEllipse : exponent);
+        corners_[axis].push_back(by_corners ? drifting_corners(ways[axis][s]) : kAllCorners);
+      }
+      keep_unfilled(axis, all ? kFilledGrown : kFilled, all ? 0 : kConvex);
       rounds_[axis] = std::ranges::any_of(exponents_[axis], [](int e) { return e != kRectangle; });
     }
   }
@@ -109,7 +120,7 @@ class ContourField {
 
   /// Sections that are not convex, or miss a good part of the contour's inside, are not what their boxes say: they stay
   /// as they are.
-  void keep_unfilled(int axis) {
+  void keep_unfilled(int axis, double filled, double convex) {
     const Sections& all = cuts_[axis];
     parallel_ranges(0, all.slices, 4, [&](int first, int last) {
       for (int slice = first; slice < last; ++slice) {
@@ -128,16 +139,30 @@ class ContourField {
           if (exponent == kRectangle) continue;
           const Section& section = all.sections[s];
           const double contour = section.width() * section.height() * superellipse_fill(exponent);
-          if (inside[s - begin] < kFilled * contour || section.area < kConvex * hulls[s - begin].area())
+          if (inside[s - begin] < filled * contour || section.area < convex * hulls[s - begin].area())
             exponent = kRectangle;
         }
       }
     });
   }
 
+  /// A bit for each corner that lies between two ends which drift.
+  static std::uint8_t drifting_corners(const Drift& drift) {
+    constexpr float kDrifts = 0.06f;  // voxels a slice
+    std::uint8_t corners = 0;
+    for (const int c : {0, 1, 2, 3}) {
+      const auto [u, v] = at_corner(drift, c);
+      corners |= (std::min(u, v) > kDrifts) << c;
+    }
+    return corners;
+  }
+
   /// Row v of a slice; voxel u's value is field[u * step].
   void row(int axis, int slice, int v, float* field, int step) const {
-    each_value(axis, slice, v, [&](int, int u, float value) {
+    each_value(axis, slice, v, [&](int section, int u, float value) {
+      const std::array<float, 4>& ends = cuts_[axis].sections[section].ends;
+      const int corner = (2 * u + 1 > ends[0] + ends[1]) + 2 * (2 * v + 1 > ends[2] + ends[3]);
+      if (!(corners_[axis][section] >> corner & 1)) return;
       float& largest = field[static_cast<std::size_t>(u) * step];
       largest = std::max(largest, value);
     });
@@ -145,7 +170,8 @@ class ContourField {
 
   Vec3i size_;
   std::array<Sections, 3> cuts_;
-  std::array<std::vector<int>, 3> exponents_;  // of each section
+  std::array<std::vector<int>, 3> exponents_;         // of each section
+  std::array<std::vector<std::uint8_t>, 3> corners_;  // of each section, a bit for each corner that is rounded
   std::array<bool, 3> rounds_{};
 };
 

@@ -9,6 +9,7 @@ struct ConvexOptions {
   bool arm = true;
   double evidence = 0.3;
   double bend = 0.4;
+  double grown = 0.2;
 };
 template <class Visitor>
 void visit_fields(ConvexOptions& o, Visitor&& field) {
@@ -16,6 +17,9 @@ void visit_fields(ConvexOptions& o, Visitor&& field) {
   field("evidence", o.evidence, 0.01, 1.0,
         "share of a part's corners between two sloping outlines that makes it round");
   field("bend", o.bend, 0.05, 100.0, "least curvature of its outlines: rms distance from lines, % of the longest side");
+  field("grown", o.grown, -1.0, 1.01,
+        "every section is rounded where so much larger a share of corners lies between drifting outlines than between "
+        "upright ones; above 1: only parts that are shown curved");
 }
 
 struct Refinement {
@@ -30,6 +34,9 @@ struct Refinement {
 /// A part is rounded where both drawings show it curved: boxes, prisms, stairs and straight tapers stay as they are.
 /// The contour is the superellipse \cite barr_1981 whose fill (area over its box's) is that of the part's own outlines;
 /// sections of `solid` that are not convex stay. Slices across all three axes are intersected.
+///
+/// A solid whose outlines hardly ever stand upright, like an animal's, looks grown: there every section is filled by an
+/// ellipse, in the corners between two outlines that drift.
 ///
 /// The result lies inside `solid` and casts the same shadow in every view: on each ray the voxels deepest inside their
 /// sections' contours stay.

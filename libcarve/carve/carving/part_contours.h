@@ -1,4 +1,7 @@
 #pragma once
+#include <array>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "carve/carving/convex_refinement.h"
@@ -7,12 +10,27 @@
 namespace carve {
 
 inline constexpr int kRectangle = 0;  // instead of an exponent
+inline constexpr int kEllipse = 2;
 
 /// The share of its box that the superellipse |u|^exponent + |v|^exponent = 1 fills.
 double superellipse_fill(double exponent);
 
-/// The exponent of each part's contour, at least 2; kRectangle where the drawings do not show that it is round.
+/// How fast each of a section's ends moves over the slices around it, in voxels a slice: the slope of the line through
+/// them, as far as they hang together.
+using Drift = std::array<float, 4>;
 /// \param longest  voxels along the solid's longest side
+std::vector<Drift> drifts(const Sections& all, int longest);
+
+/// Of the two ends that meet in corner 0 .. 3: bit 0 is the upper end of u, bit 1 that of v.
+inline std::pair<float, float> at_corner(const Drift& drift, int corner) {
+  return {drift[corner & 1], drift[2 + (corner >> 1)]};
+}
+
+/// How far a solid looks grown and not built, in [-1, 1]: the share of its sections' corners that lie between two ends
+/// which both drift, less the share between two that both stand. \param cuts, ways  across the three axes
+double grown(std::span<const Sections> cuts, std::span<const std::vector<Drift>> ways);
+
+/// The exponent of each part's contour, at least 2; kRectangle where the drawings do not show that it is round.
 std::vector<int> part_exponents(const Sections& all, int longest, const ConvexOptions& options);
 
 }  // namespace carve
