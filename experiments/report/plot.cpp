@@ -195,6 +195,10 @@ void plot(const fs::path& folder, const std::string& name, const Overview& overv
           const RunMetric& metric) {
   const Data data =
       overview.sweep.empty() ? model_data(overview, records, metric) : swept_data(overview, records, metric);
+  const auto drawn = [](const std::vector<double>& row) {
+    return std::any_of(row.begin(), row.end(), [](double y) { return std::isfinite(y); });
+  };
+  if (std::none_of(data.y.begin(), data.y.end(), drawn)) return;
   fs::create_directories(folder);
   write_file(folder / (name + ".csv"), [&](std::ostream& out) { out << csv_of(data, overview); });
   write_file(folder / (name + ".gnuplot"), [&](std::ostream& out) { out << script_of(data, overview, metric, name); });

@@ -36,7 +36,11 @@ std::string markdown(const TextTable& table) {
 
 std::string html(const TextTable& table) {
   std::string out = "<div class=\"wide\"><table><thead><tr>";
-  for (const std::string& column : table.header) out += "<th>" + html_text(column) + "</th>";
+  for (const std::string& column : table.header) {
+    std::string text = html_text(column);
+    for (std::size_t at = 0; (at = text.find('_', at)) != std::string::npos; at += 6) text.insert(at + 1, "<wbr>");
+    out += "<th>" + text + "</th>";
+  }
   out += "</tr></thead>\n";
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     out += i == table.ruled ? "<tr class=\"ruled\">" : "<tr>";
