@@ -46,9 +46,10 @@ void compare_metric(std::ostream& out, const RunMetric& metric, const std::vecto
     }
     if (left.empty()) continue;
     const PairedDifference d = paired_difference(right, left);
-    const char* verdict = d.mean == 0 && d.better + d.worse == 0 ? "same"
-                          : d.beyond_noise()                     ? "beyond noise"
-                                                                 : "within noise";
+    const char* verdict = d.mean == 0 && d.better + d.worse == 0    ? "same"
+                          : d.pairs < PairedDifference::kLeastPairs ? "too few runs to tell"
+                          : d.beyond_noise()                        ? "beyond noise"
+                                                                    : "within noise";
     out << "| " << method << " | " << d.pairs << " | " << short_text(mean(left)) << " | " << short_text(mean(right))
         << " | " << short_text(d.mean) << " | [" << short_text(d.low) << ", " << short_text(d.high) << "] | "
         << short_text(d.p) << " | " << verdict << " |\n";

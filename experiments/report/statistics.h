@@ -13,8 +13,10 @@ struct PairedDifference {
   double mean = 0;
   double low = 0, high = 0;  // 95 % bootstrap percentile interval of the mean difference
   double p = 1;              // two-sided exact sign test; ties are left out
+  /// Below this not even pairs that all agree are unlikely by chance (sign test, 5 %).
+  static constexpr int kLeastPairs = 6;
   /// The interval does not contain 0.
-  bool beyond_noise() const { return pairs > 1 && (low > 0 || high < 0); }
+  bool beyond_noise() const { return pairs >= kLeastPairs && (low > 0 || high < 0); }
 };
 
 /// Bootstrap of 10,000 resamples with a fixed seed: the same differences give the same interval everywhere.

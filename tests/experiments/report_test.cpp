@@ -118,6 +118,7 @@ TEST(Compare, PairsRunsAndNamesWhatOnlyOneSideHas) {
   EXPECT_THAT(text, HasSubstr("1 of 2 runs"));
   EXPECT_THAT(text, HasSubstr("zebra / new / seed 1: A done, B stopped after 3 s"));
   EXPECT_THAT(text, HasSubstr("1.000 → 3.000"));
+  EXPECT_THAT(text, HasSubstr("too few runs to tell"));
 }
 
 }  // namespace
