@@ -2,12 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
 
+#include "carve/carving/carve_silhouettes.h"
 #include "carve/core/parallel.h"
 #include "carve/mesh/topology.h"
+#include "carve/surface/marching_cubes.h"
+#include "carve/surface/sharpen.h"
 #include "mesh/solids.h"
+#include "shapes.h"
 
 namespace carve {
 namespace {
@@ -164,6 +169,53 @@ TEST(Smooth, EdgesAsSharpAsTheLevelAreSmoothed) {
       EXPECT_NE(moved.positions[v], box.positions[v]);
     }
   }
+}
+
+struct Guided {
+  Mesh mesh;
+  Guides guides;
+};
+Guided sharp_hull(const Shape& shape, int grid) {
+  const ViewSet views = aligned(shape, kThreeViews, {.pixels = 300});
+  const VoxelGrid hull = carve_silhouettes(views, {.grid = grid}).grid;
+  const Crossings crossings = contour_crossings(views, hull);
+  const Mesh mesh = marching_cubes(hull, crossings);
+  Guides guides = vertex_guides(mesh, hull, crossings);
+  Mesh sharp = sharpen(mesh, hull, guides);
+  return {std::move(sharp), std::move(guides)};
+}
+
+TEST(Smooth, KeptBoxesAndStairsStayExact) {
+  for (const Shape& shape : {box(), stairs(5)}) {
+    const Guided hull = sharp_hull(shape, 50);
+    const double volume = topology(hull.mesh).volume;
+    for (const Smoothing method : {Smoothing::laplacian, Smoothing::taubin}) {
+      const SmoothOptions kept{.steps = 5, .method = method, .keep = true};
+      EXPECT_NEAR(topology(smooth(hull.mesh, kept, {}, hull.guides)).volume, volume, 1e-4) << shape.name;
+    }
+    EXPECT_LT(topology(smooth(hull.mesh, {.steps = 5}, {}, hull.guides)).volume, volume - 1e-3) << shape.name;
+  }
+}
+
+TEST(Smooth, KeptVerticesSlideAlongTheirGuides) {
+  for (const Shape& shape : all_shapes()) {
+    const Guided hull = sharp_hull(shape, 40);
+    const Mesh kept = smooth(hull.mesh, {.steps = 3, .keep = true}, {}, hull.guides);
+    for (std::size_t v = 0; v < hull.guides.size(); ++v) {
+      const Vec3 way = kept.positions[v] - hull.mesh.positions[v], axis = hull.guides[v].axis.cast<double>();
+      const Guide::Kind kind = hull.guides[v].kind;
+      const double off = kind == Guide::Kind::plane   ? std::abs(way.dot(axis))
+                         : kind == Guide::Kind::line  ? way.cross(axis).norm()
+                         : kind == Guide::Kind::fixed ? way.norm()
+                                                      : 0;
+      ASSERT_LT(off, 1e-6) << shape.name << " " << v;
+    }
+  }
+}
+
+TEST(Smooth, RefusesGuidesOfAnotherMesh) {
+  EXPECT_THROW(smooth(tetrahedron_mesh(), {.keep = true}, {}, Guides(3)), std::invalid_argument);
+  EXPECT_EQ(smooth(tetrahedron_mesh(), {.keep = true}), smooth(tetrahedron_mesh()));
 }
 
 TEST(Smooth, AVertexOfManyTrianglesCostsNoSquare) {

@@ -5,6 +5,7 @@
 
 #include "carve/surface/crossings.h"
 #include "carve/surface/marching_cubes.h"
+#include "carve/surface/sharpen.h"
 
 namespace carve {
 namespace {
@@ -81,15 +82,20 @@ Reconstruction reconstruct(std::map<View, Drawing> drawings, const PipelineOptio
     crossings.edges = std::move(refined.crossings);
     return crossings;
   });
-  Mesh surface = stage("surface", [&] { return marching_cubes(result.grid, crossings); });
-  Mesh smoothed = stage("smooth", [&] { return smooth(std::move(surface), options.smooth, monitor); });
+  Guides guides;
+  Mesh surface = stage("surface", [&] {
+    Mesh mesh = marching_cubes(result.grid, crossings);
+    if (options.intersections_sharp || options.smooth.keep) guides = vertex_guides(mesh, result.grid, crossings);
+    return options.intersections_sharp ? sharpen(mesh, result.grid, guides) : mesh;
+  });
+  Mesh smoothed = stage("smooth", [&] { return smooth(std::move(surface), options.smooth, monitor, guides); });
   RefinedMesh fine = stage("refine", [&] { return refine(std::move(smoothed), options.refine, monitor); });
   result.mesh = std::move(fine.mesh);
   result.refinement = std::move(fine.steps);
   result.topology = stage("check", [&] { return topology(result.mesh); });
   if (options.texture.arm == TextureArm::blend || options.texture.arm == TextureArm::best_view)
-    result.textured = stage(
-        "texture", [&] { return texture(result.mesh, result.views, options.texture, options.atlas, monitor); });
+    result.textured =
+        stage("texture", [&] { return texture(result.mesh, result.views, options.texture, options.atlas, monitor); });
   result.agreement = agreement(result.grid, result.views);
   monitor.at("done", 1);
   return result;

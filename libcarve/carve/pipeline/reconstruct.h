@@ -22,6 +22,7 @@ namespace carve {
 struct PipelineOptions {
   CarveOptions carve;
   bool intersections = true;
+  bool intersections_sharp = false;
   ConsistencyOptions consistency;
   ConvexOptions convex;
   DrawingOptions drawing;
@@ -35,6 +36,7 @@ struct PipelineOptions {
 template <class Visitor>
 void visit_fields(PipelineOptions& o, Visitor&& field) {
   field("intersections", o.intersections, "vertices at the exact crossing of grid line and drawn contour");
+  field("intersections_sharp", o.intersections_sharp, "edges and corners at their place instead of cut off");
   field("faces", o.refine.faces, 4, 1e9, "triangles to leave, by edge collapse; auto: all");
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <numbers>
 #include <span>
+#include <stdexcept>
 
 #include "carve/core/options.h"
 #include "carve/core/parallel.h"
@@ -94,16 +95,34 @@ std::vector<std::uint8_t> sharp_vertices(const Mesh& mesh, const VertexTriangles
   return sharp;
 }
 
+/// The part of a step that a guide allows.
+Vec3 guided(const Vec3& step, const Guide& guide) {
+  const Vec3 axis = guide.axis.cast<double>();
+  switch (guide.kind) {
+    case Guide::Kind::plane:
+      return step - axis.dot(step) * axis;
+    case Guide::Kind::line:
+      return axis.dot(step) * axis;
+    case Guide::Kind::fixed:
+      return Vec3::Zero();
+    default:
+      return step;
+  }
+}
+
 }  // namespace
 
-Mesh smooth(Mesh mesh, const SmoothOptions& options, const Monitor& monitor) {
+Mesh smooth(Mesh mesh, const SmoothOptions& options, const Monitor& monitor, const Guides& guides) {
   check("smooth", options);
+  if (options.keep && !guides.empty() && guides.size() != mesh.positions.size())
+    throw std::invalid_argument("smooth: guides must be as many as the mesh's vertices");
   if (options.steps == 0 || options.level == 0) return mesh;
   const VertexTriangles around = vertex_triangles(mesh);
   // Found once: what is sharp in the input stays, however the steps bend its surroundings.
   const std::vector<std::uint8_t> sharp = options.level < 180 ? sharp_vertices(mesh, around, options.level)
                                                               : std::vector<std::uint8_t>(mesh.positions.size());
   const Rings rings = one_rings(mesh, around);
+  const Guide* guide = options.keep && !guides.empty() ? guides.data() : nullptr;
   std::vector<Vec3> moved(mesh.positions.size());
   const auto move = [&](double share) {
     parallel_ranges(0, static_cast<int>(moved.size()), kGrain, [&](int first, int last) {
@@ -113,7 +132,8 @@ Mesh smooth(Mesh mesh, const SmoothOptions& options, const Monitor& monitor) {
         // Summing differences, as Equation 3.7 does, keeps planes exactly plane.
         Vec3 sum = Vec3::Zero();
         for (std::uint32_t i = begin; i < end; ++i) sum += mesh.positions[rings.neighbours[i]] - position;
-        moved[v] = end > begin ? Vec3(position + share * (sum / (end - begin))) : position;
+        if (end > begin) sum *= share / (end - begin);
+        moved[v] = position + (guide ? guided(sum, guide[v]) : sum);
       }
     });
     mesh.positions.swap(moved);

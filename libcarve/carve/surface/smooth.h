@@ -3,6 +3,7 @@
 
 #include "carve/core/monitor.h"
 #include "carve/mesh/mesh.h"
+#include "carve/surface/guides.h"
 
 namespace carve {
 
@@ -19,6 +20,7 @@ struct SmoothOptions {
   int steps = 2;
   double level = 180;  // degrees
   Smoothing method = Smoothing::laplacian;
+  bool keep = false;
 };
 template <class Visitor>
 void visit_fields(SmoothOptions& o, Visitor&& field) {
@@ -26,12 +28,14 @@ void visit_fields(SmoothOptions& o, Visitor&& field) {
   field("level", o.level, 0.0, 180.0,
         "largest angle in degrees between neighbouring triangles' normals that is still smoothed; sharper edges stay");
   field("method", o.method, "laplacian shrinks, taubin keeps the volume");
+  field("keep", o.keep, "outlines, edges and corners that the drawings show stay: vertices slide along them");
 }
 
 /// Laplacian smoothing (thesis 3.1.6, Equation 3.7; level: A.1.3.2) \cite bardyn_2010: each step moves every vertex to
 /// the mean of its one-ring, all at once; a vertex on an edge sharper than `level` stays. Taubin's steps go half the
 /// way there, then a little more than half the way back, which leaves all but the rough alone. Topology is kept; zero
-/// steps or level 0 is the identity. \throws std::invalid_argument on an option out of range
-Mesh smooth(Mesh mesh, const SmoothOptions& options = {}, const Monitor& monitor = {});
+/// steps or level 0 is the identity. \param guides  with `keep`: one a vertex, which limits each of its steps; or none
+/// \throws std::invalid_argument on an option out of range, or guides of another mesh
+Mesh smooth(Mesh mesh, const SmoothOptions& options = {}, const Monitor& monitor = {}, const Guides& guides = {});
 
 }  // namespace carve
