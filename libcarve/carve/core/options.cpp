@@ -185,7 +185,7 @@ Field plain_field(std::string name, bool& value, std::string help) {
           Field::Kind::boolean,
           false,
           [&value] { return std::string(value ? "on" : "off"); },
-          [name, &value](std::string_view text) {
+          [name = std::move(name), &value](std::string_view text) {
             if (text != "on" && text != "off" && text != "true" && text != "false") reject(name, "on or off", text);
             value = text == "on" || text == "true";
           }};
@@ -220,8 +220,8 @@ Field choice_field(std::string name, std::span<const char* const> names, std::fu
           std::move(help),
           Field::Kind::text,
           false,
-          [=] { return std::string(names[get()]); },
-          [=](std::string_view text) {
+          [names, get = std::move(get)] { return std::string(names[get()]); },
+          [name = std::move(name), names, range, set = std::move(set)](std::string_view text) {
             const auto found = std::find(names.begin(), names.end(), text);
             if (found == names.end()) reject(name, "one of " + range, text);
             set(static_cast<int>(found - names.begin()));
