@@ -3,6 +3,7 @@
 #include <chrono>
 #include <utility>
 
+#include "carve/core/error.h"
 #include "carve/surface/crossings.h"
 #include "carve/surface/marching_cubes.h"
 #include "carve/surface/sharpen.h"
@@ -76,6 +77,7 @@ Reconstruction reconstruct(std::map<View, Drawing> drawings, const PipelineOptio
     return refine_convex(std::exchange(result.consistency.grid, {}), result.views, options.convex);
   });
   result.grid = std::move(refined.grid);
+  if (result.grid.count() == 0) throw NoResult("geometric consistency left no voxel");
   const Crossings crossings = stage("intersections", [&] {
     if (!options.intersections) return Crossings{};
     Crossings crossings = contour_crossings(result.views, result.grid);
@@ -85,6 +87,7 @@ Reconstruction reconstruct(std::map<View, Drawing> drawings, const PipelineOptio
   Guides guides;
   Mesh surface = stage("surface", [&] {
     Mesh mesh = marching_cubes(result.grid, crossings);
+    if (!options.intersections) return mesh;
     if (options.intersections_sharp || options.smooth.keep) guides = vertex_guides(mesh, result.grid, crossings);
     return options.intersections_sharp ? sharpen(mesh, result.grid, guides) : mesh;
   });

@@ -22,7 +22,7 @@ namespace carve {
 struct PipelineOptions {
   CarveOptions carve;
   bool intersections = true;
-  bool intersections_sharp = false;
+  bool intersections_sharp = true;
   ConsistencyOptions consistency;
   ConvexOptions convex;
   DrawingOptions drawing;
@@ -36,7 +36,8 @@ struct PipelineOptions {
 template <class Visitor>
 void visit_fields(PipelineOptions& o, Visitor&& field) {
   field("intersections", o.intersections, "vertices at the exact crossing of grid line and drawn contour");
-  field("intersections_sharp", o.intersections_sharp, "edges and corners at their place instead of cut off");
+  field("intersections_sharp", o.intersections_sharp,
+        "with intersections: edges and corners at their place instead of cut off");
   field("faces", o.refine.faces, 4, 1e9, "triangles to leave, by edge collapse; auto: all");
 }
 

@@ -20,7 +20,7 @@ struct SmoothOptions {
   int steps = 2;
   double level = 180;  // degrees
   Smoothing method = Smoothing::laplacian;
-  bool keep = false;
+  bool keep = true;
 };
 template <class Visitor>
 void visit_fields(SmoothOptions& o, Visitor&& field) {
@@ -28,7 +28,8 @@ void visit_fields(SmoothOptions& o, Visitor&& field) {
   field("level", o.level, 0.0, 180.0,
         "largest angle in degrees between neighbouring triangles' normals that is still smoothed; sharper edges stay");
   field("method", o.method, "laplacian shrinks, taubin keeps the volume");
-  field("keep", o.keep, "outlines, edges and corners that the drawings show stay: vertices slide along them");
+  field("keep", o.keep,
+        "with intersections: outlines, edges and corners that the drawings show stay, vertices slide along them");
 }
 
 /// Laplacian smoothing (thesis 3.1.6, Equation 3.7; level: A.1.3.2) \cite bardyn_2010: each step moves every vertex to
