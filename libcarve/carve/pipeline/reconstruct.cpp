@@ -26,6 +26,15 @@ class Stages {
     return result;
   }
 
+  // For the work of the stage that runs: its 0 to 1 is the stage's share of the whole.
+  Monitor within() const {
+    if (!monitor_.progress) return monitor_;
+    return {[this](std::string_view name, double fraction) {
+              monitor_.progress(name, (static_cast<double>(times_.size()) + fraction) / count_);
+            },
+            monitor_.stop};
+  }
+
  private:
   const Monitor& monitor_;
   int count_;
@@ -68,11 +77,11 @@ Reconstruction reconstruct(std::map<View, Drawing> drawings, const PipelineOptio
   for (const Field& field : fields(checked)) field.set(field.get());
 
   Reconstruction result;
-  Stages stage(monitor, 9, result.times);
+  Stages stage(monitor, 10, result.times);
   result.views = stage("align", [&] { return align(std::move(drawings), options.align); });
   const Carving hull = stage("carve", [&] { return carve_silhouettes(result.views, options.carve); });
   result.consistency =
-      stage("consistency", [&] { return apply_consistency(hull, result.views, options.consistency, monitor); });
+      stage("consistency", [&] { return apply_consistency(hull, result.views, options.consistency, stage.within()); });
   Refinement refined = stage("convex", [&] {
     return refine_convex(std::exchange(result.consistency.grid, {}), result.views, options.convex);
   });
@@ -91,14 +100,14 @@ Reconstruction reconstruct(std::map<View, Drawing> drawings, const PipelineOptio
     if (options.intersections_sharp || options.smooth.keep) guides = vertex_guides(mesh, result.grid, crossings);
     return options.intersections_sharp ? sharpen(mesh, result.grid, guides) : mesh;
   });
-  Mesh smoothed = stage("smooth", [&] { return smooth(std::move(surface), options.smooth, monitor, guides); });
-  RefinedMesh fine = stage("refine", [&] { return refine(std::move(smoothed), options.refine, monitor); });
+  Mesh smoothed = stage("smooth", [&] { return smooth(std::move(surface), options.smooth, stage.within(), guides); });
+  RefinedMesh fine = stage("refine", [&] { return refine(std::move(smoothed), options.refine, stage.within()); });
   result.mesh = std::move(fine.mesh);
   result.refinement = std::move(fine.steps);
   result.topology = stage("check", [&] { return topology(result.mesh); });
   if (options.texture.arm == TextureArm::blend || options.texture.arm == TextureArm::best_view)
-    result.textured =
-        stage("texture", [&] { return texture(result.mesh, result.views, options.texture, options.atlas, monitor); });
+    result.textured = stage(
+        "texture", [&] { return texture(result.mesh, result.views, options.texture, options.atlas, stage.within()); });
   result.agreement = agreement(result.grid, result.views);
   monitor.at("done", 1);
   return result;
