@@ -11,6 +11,7 @@
 #include "carve/image/read_image.h"
 #include "carve/mesh/mesh_io.h"
 #include "eval/metrics.h"
+#include "eval/texture_scores.h"
 #include "models/inside.h"
 #include "run/hash.h"
 #include "run/methods.h"
@@ -58,6 +59,20 @@ constexpr Step kSteps[] = {{"step_volume", {"align", "carve", "consistency", "co
                            {"step_mesh", {"intersections", "surface", "smooth", "fit", "refine", "hull"}},
                            {"step_texture", {"atlas", "diffuse", "texture"}}};
 
+void measure_texture(const TexturedMesh& model, const MethodInput& input, Record& record) {
+  const AtlasScores atlas = atlas_scores(model);
+  record.metrics["charts"] = static_cast<double>(atlas.charts);
+  record.metrics["packing"] = atlas.packing;
+  record.metrics["distortion"] = atlas.distortion;
+  record.metrics["seam_length"] = atlas.seam_length;
+  record.metrics["seam_contrast"] = atlas.seam_contrast;
+  const RoundTrip trip = round_trip(model, align(input.drawings, input.options.pipeline.align));
+  for (const auto& [metric, value] :
+       {std::pair("texture_psnr", trip.psnr), std::pair("texture_psnr_all", trip.psnr_all),
+        std::pair("texture_ssim", trip.ssim), std::pair("ghosting", trip.ghosting)})
+    if (value) record.metrics[metric] = *value;
+}
+
 void record_times(const std::vector<StageTime>& times, Record& record) {
   for (const StageTime& time : times) {
     record.metrics["seconds_" + time.stage] += time.seconds;
@@ -94,6 +109,7 @@ void run_cell(const fs::path& results, const std::string& spec, const Cell& cell
                     record);
   }
   measure_shadows(output.mesh, input, record);
+  if (!output.textured.texture.empty()) measure_texture(output.textured, input, record);
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   record.metrics["megabytes"] = static_cast<double>(usage.ru_maxrss) / 1024;

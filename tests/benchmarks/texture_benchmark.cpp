@@ -30,18 +30,20 @@ Object read(const char* name) {
 const TextureOptions kBest{.arm = TextureArm::best_view};
 
 void views(benchmark::State& state, const Object& object) {
-  for (auto _ : state) benchmark::DoNotOptimize(choose_views(object.untextured.mesh, object.untextured.views, kBest));
+  const Drawings drawings(object.untextured.views, kBest);
+  for (auto _ : state)
+    benchmark::DoNotOptimize(choose_views(object.untextured.mesh, object.untextured.views, drawings, kBest));
 }
 
 void atlas(benchmark::State& state, const Object& object) {
   const auto& [mesh, set] = std::tie(object.untextured.mesh, object.untextured.views);
-  const ViewChoice choice = choose_views(mesh, set, kBest);
+  const ViewChoice choice = choose_views(mesh, set, Drawings(set, kBest), kBest);
   for (auto _ : state) benchmark::DoNotOptimize(lay_out(mesh, view_charts(mesh, set, choice)));
 }
 
 void diffuse(benchmark::State& state, const Object& object) {
   const auto& [mesh, set] = std::tie(object.untextured.mesh, object.untextured.views);
-  const ViewChoice choice = choose_views(mesh, set, kBest);
+  const ViewChoice choice = choose_views(mesh, set, Drawings(set, kBest), kBest);
   const Atlas atlas = lay_out(mesh, view_charts(mesh, set, choice));
   for (auto _ : state) {
     const Drawings drawings(set, kBest);

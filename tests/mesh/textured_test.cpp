@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "carve/core/error.h"
 #include "carve/image/read_image.h"
 #include "carve/mesh/mesh_io.h"
 #include "carve/mesh/topology.h"
@@ -69,6 +70,16 @@ TEST_P(Textured, AssimpFindsOneMaterialWithAPicture) {
   EXPECT_THAT(text, HasSubstr("\nvt "));
 }
 
+TEST_P(Textured, BlenderOpensItWithItsPicture) {
+  if (!is_installed("blender")) GTEST_SKIP() << "blender is not installed (Debian package blender)";
+  const TexturedMesh model = shattered(ball_mesh(3));
+  write_textured_mesh(path(), model);
+  const Outcome found =
+      run_program("blender -b --factory-startup -P " CARVE_TESTS "/mesh/open_in_blender.py -- " + path().string());
+  EXPECT_THAT(found.out, HasSubstr(std::to_string(model.mesh.triangles.size()) + " triangles, UV in [0.")) << found.err;
+  EXPECT_THAT(found.out, HasSubstr("picture 8x8 sRGB\n"));
+}
+
 TEST_P(Textured, WithoutATextureIsThePlainMesh) {
   const Mesh mesh = ball_mesh(3);
   write_textured_mesh(path(), TexturedMesh{mesh, {}, {}, {}});
@@ -100,6 +111,27 @@ TEST(TexturedObj, NamesItsMaterialAndThatItsPicture) {
   EXPECT_THAT(read_file(folder / "a.mtl"), HasSubstr("map_Kd a.png\n"));
   EXPECT_EQ(read_image(folder / "a.png"), model.texture);
   EXPECT_THAT(read_file(folder / "a.png"), HasSubstr("sRGB"));
+}
+
+TEST(TexturedGlb, ReadsBackWithItsTexture) {
+  const TemporaryFolder folder;
+  for (unsigned seed = 0; seed < 6; ++seed) {
+    const TexturedMesh model = shattered(random_solid(seed));
+    write_textured_mesh(folder / "a.glb", model);
+    const TexturedMesh back = read_textured_mesh(folder / "a.glb");
+    EXPECT_EQ(back.texture, model.texture);
+    EXPECT_TRUE(topology(back.mesh).solid());
+    ASSERT_EQ(back.uv_triangles.size(), model.uv_triangles.size());
+    for (std::size_t t = 0; t < model.uv_triangles.size(); ++t)
+      for (int k = 0; k < 3; ++k) {
+        const auto position = [&](const TexturedMesh& m) { return m.mesh.positions[m.mesh.triangles[t][k]]; };
+        EXPECT_LT((position(back) - position(model)).norm(), 1e-5);
+        EXPECT_LT((back.uvs[back.uv_triangles[t][k]] - model.uvs[model.uv_triangles[t][k]]).norm(), 1e-6);
+      }
+  }
+  write_mesh(folder / "plain.glb", ball_mesh(2));
+  EXPECT_THROW(read_textured_mesh(folder / "plain.glb"), IoError);
+  EXPECT_THROW(read_textured_mesh(folder / "a.obj"), IoError);
 }
 
 TEST(TexturedGlb, HoldsThePicture) {

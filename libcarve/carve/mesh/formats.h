@@ -26,6 +26,7 @@ Mesh read_obj(const std::string& path, std::string_view bytes);
 Mesh read_off(const std::string& path, std::string_view bytes);
 Mesh read_stl(const std::string& path, std::string_view bytes);
 Mesh read_glb(const std::string& path, std::string_view bytes);
+TexturedMesh read_textured_glb(const std::string& path, std::string_view bytes);
 
 /// By the path's ending; what read_mesh does once it has the file.
 Mesh read(const std::filesystem::path& path, std::string_view bytes);

@@ -107,4 +107,9 @@ Mesh read_mesh(const fs::path& path) {
   return formats::read(path, read_file(path));
 }
 
+TexturedMesh read_textured_mesh(const fs::path& path) {
+  if (!has_ending(path, ".glb")) throw IoError(path.string(), "a mesh with its texture is read from .glb only");
+  return formats::read_textured_glb(path.string(), read_file(path));
+}
+
 }  // namespace carve

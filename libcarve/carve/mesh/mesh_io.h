@@ -34,5 +34,7 @@ std::vector<std::filesystem::path> texture_files(const std::filesystem::path& pa
 /// naming the place: missing, truncated, indices out of range, coordinates that are not finite, counts
 ///         the file cannot hold
 Mesh read_mesh(const std::filesystem::path& path);
+/// A .glb file whose triangles all take their base colour from one picture inside it. \throws IoError also for others
+TexturedMesh read_textured_mesh(const std::filesystem::path& path);
 
 }  // namespace carve

@@ -6,20 +6,16 @@
 #include <numeric>
 #include <optional>
 
+#include "carve/image/read_image.h"
 #include "carve/mesh/formats.h"
 
 namespace carve::formats {
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr std::uint32_t kMagic = 0x46546c67, kJsonChunk = 0x4e4f534a, kBinaryChunk = 0x004e4942;
 constexpr std::size_t kLongestJson = std::size_t{1} << 26;  // parsed, it takes many times its size
-// What a scene may have. Its nodes can show one mesh often, so the file's size does not bound it.
-constexpr std::size_t kMost = std::size_t{1} << 26;  // vertices or triangles, unless the file itself holds more
-constexpr std::size_t kMostPrimitives = std::size_t{1} << 20;
+using Json = nlohmann::json;
 enum Component { kUnsignedByte = 5121, kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126 };
-enum Mode { kTriangles = 4, kStrip = 5, kFan = 6 };
 
 template <class T>
 T load(std::string_view bytes, std::size_t at) {
@@ -35,102 +31,167 @@ struct Accessor {
   int component = 0;
 };
 
-class GlbReader {
+// A GLB file whose values are never copied or printed whole: a hostile file nests them deeper than the stack.
+class GlbFile {
  public:
-  GlbReader(const std::string& path, std::string_view bytes) : path_(path), bytes_(bytes) {}
+  /// \throws IoError  as all members; Json::exception where the JSON lacks a member or has another type
+  GlbFile(const std::string& path, std::string_view bytes);
 
-  Mesh read() {
-    read_chunks();
+  [[noreturn]] void fail(const std::string& why) const { throw IoError(path_, why); }
+  const Json& json() const { return json_; }
+  std::size_t size() const { return bytes_.size(); }
+  std::size_t whole(const Json& value, const char* name) const;
+  std::size_t member(const Json& object, const char* key, std::optional<std::size_t> otherwise = {}) const;
+  const Json& list(const Json& object, const char* key) const;  // empty where there is none
+  const Json& item(const char* array, std::size_t index) const;
+  Accessor accessor(std::size_t index, const std::string& type) const;  // SCALAR, VEC2 or VEC3
+  std::string_view view(std::size_t index) const;                       // a bufferView's bytes
+
+ private:
+  void read_chunks();
+
+  const std::string& path_;
+  std::string_view bytes_, binary_;
+  Json json_;
+};
+
+GlbFile::GlbFile(const std::string& path, std::string_view bytes) : path_(path), bytes_(bytes) { read_chunks(); }
+
+void GlbFile::read_chunks() {
+  if (bytes_.size() < 20 || load<std::uint32_t>(bytes_, 0) != kMagic) fail("is not a GLB file");
+  if (load<std::uint32_t>(bytes_, 4) != 2)
+    fail("the glTF version must be 2, got " + std::to_string(load<std::uint32_t>(bytes_, 4)));
+  const std::size_t length = load<std::uint32_t>(bytes_, 8);
+  if (length != bytes_.size())
+    fail("declares " + std::to_string(length) + " bytes, got " + std::to_string(bytes_.size()));
+  std::string_view text;
+  for (std::size_t at = 12; at < bytes_.size();) {
+    if (bytes_.size() - at < 8) fail("the file ends inside a chunk's header");
+    const std::size_t size = load<std::uint32_t>(bytes_, at);
+    const std::uint32_t kind = load<std::uint32_t>(bytes_, at + 4);
+    at += 8;
+    if (size > bytes_.size() - at)
+      fail("a chunk declares " + std::to_string(size) + " bytes, the file has " + std::to_string(bytes_.size() - at) +
+           " left");
+    if (kind == kJsonChunk && size > kLongestJson)
+      fail("the JSON chunk must have at most " + std::to_string(kLongestJson) + " bytes, got " + std::to_string(size));
+    if (kind == kJsonChunk && text.empty()) text = bytes_.substr(at, size);
+    if (kind == kBinaryChunk && binary_.empty()) binary_ = bytes_.substr(at, size);
+    at += size;
+  }
+  try {
+    json_ = Json::parse(text);
+  } catch (const Json::exception& error) {
+    fail("glTF JSON: " + excerpt(error.what(), 160));
+  }
+  if (!json_.is_object()) fail("glTF JSON: must be an object");
+}
+
+std::size_t GlbFile::whole(const Json& value, const char* name) const {
+  if (!value.is_number_unsigned())
+    fail(std::string(name) + " must be a whole number from 0, got " +
+         (value.is_number() ? value.dump() : value.type_name()));
+  return value.get<std::size_t>();
+}
+std::size_t GlbFile::member(const Json& object, const char* key, std::optional<std::size_t> otherwise) const {
+  return otherwise && !object.contains(key) ? *otherwise : whole(object.at(key), key);
+}
+
+const Json& GlbFile::list(const Json& object, const char* key) const {
+  static const Json none = Json::array();
+  if (!object.contains(key)) return none;
+  if (!object.at(key).is_array()) fail(std::string(key) + " must be an array, got " + object.at(key).type_name());
+  return object.at(key);
+}
+
+const Json& GlbFile::item(const char* array, std::size_t index) const {
+  const Json& items = list(json_, array);
+  if (index >= items.size()) fail(std::string(array) + "[" + std::to_string(index) + "] does not exist");
+  return items[index];
+}
+
+Accessor GlbFile::accessor(std::size_t index, const std::string& type) const {
+  const std::string name = "accessors[" + std::to_string(index) + "]";
+  const Json& json = item("accessors", index);
+  if (json.at("type").get<std::string>() != type) fail(name + " must be of type " + type);
+  if (!json.contains("bufferView") || json.contains("sparse"))
+    fail(name + " is sparse or compressed, which is not supported");
+  const Json& view = item("bufferViews", member(json, "bufferView"));
+  const std::size_t buffer = member(view, "buffer");
+  if (buffer != 0 || item("buffers", buffer).contains("uri"))
+    fail(name + " lies outside the file's binary chunk, which is not supported");
+  const int component = static_cast<int>(member(json, "componentType"));
+  const std::size_t size = component == kUnsignedByte                         ? 1
+                           : component == kUnsignedShort                      ? 2
+                           : component == kUnsignedInt || component == kFloat ? 4
+                                                                              : 0;
+  if (size == 0 || (type == "SCALAR" && component == kFloat))
+    fail(name + ": componentType " + std::to_string(component) + " is not supported");
+  const std::size_t element = size * (type == "VEC3" ? 3 : type == "VEC2" ? 2 : 1);
+  Accessor result{binary_, member(json, "byteOffset", 0), member(view, "byteStride", element), member(json, "count"),
+                  component};
+  const std::size_t view_begin = member(view, "byteOffset", 0), view_size = member(view, "byteLength");
+  const bool inside = view_begin <= binary_.size() && view_size <= binary_.size() - view_begin &&
+                      result.begin <= view_size && result.stride >= element && result.stride <= 252 + element;
+  const std::size_t room = inside ? view_size - result.begin : 0;
+  if (!inside || (result.count > 0 && (element > room || result.count - 1 > (room - element) / result.stride)))
+    fail(name + ": " + std::to_string(result.count) + " elements do not fit into its bufferView and the file");
+  result.begin += view_begin;
+  return result;
+}
+
+std::string_view GlbFile::view(std::size_t index) const {
+  const Json& view = item("bufferViews", index);
+  const std::size_t begin = member(view, "byteOffset", 0), size = member(view, "byteLength");
+  if (member(view, "buffer") != 0 || begin > binary_.size() || size > binary_.size() - begin)
+    fail("bufferViews[" + std::to_string(index) + "] does not lie in the file");
+  return binary_.substr(begin, size);
+}
+
+// What a scene may have. Its nodes can show one mesh often, so the file's size does not bound it.
+constexpr std::size_t kMost = std::size_t{1} << 26;  // vertices or triangles, unless the file itself holds more
+constexpr std::size_t kMostPrimitives = std::size_t{1} << 20;
+enum Mode { kTriangles = 4, kStrip = 5, kFan = 6 };
+
+class GlbReader : GlbFile {
+ public:
+  GlbReader(const std::string& path, std::string_view bytes, bool textured)
+      : GlbFile(path, bytes), path_(path), textured_(textured) {}
+
+  TexturedMesh read() {
     try {
       refuse_extensions();
-      visited_.resize(list(json_, "nodes").size());
+      visited_.resize(list(json(), "nodes").size());
       for (const std::size_t root : roots()) walk(root);
       check_size();
       for (const auto& [primitive, place] : placed_) read_primitive(*primitive, place);
+      if (textured_) read_picture();
     } catch (const Json::exception& error) {
       fail("glTF JSON: " + excerpt(error.what(), 160));
     }
-    return std::move(mesh_);
+    return std::move(result_);
   }
 
  private:
-  [[noreturn]] void fail(const std::string& why) const { throw IoError(path_, why); }
-
-  void read_chunks() {
-    if (bytes_.size() < 20 || load<std::uint32_t>(bytes_, 0) != kMagic) fail("is not a GLB file");
-    if (load<std::uint32_t>(bytes_, 4) != 2)
-      fail("the glTF version must be 2, got " + std::to_string(load<std::uint32_t>(bytes_, 4)));
-    const std::size_t length = load<std::uint32_t>(bytes_, 8);
-    if (length != bytes_.size())
-      fail("declares " + std::to_string(length) + " bytes, got " + std::to_string(bytes_.size()));
-    std::string_view text;
-    for (std::size_t at = 12; at < bytes_.size();) {
-      if (bytes_.size() - at < 8) fail("the file ends inside a chunk's header");
-      const std::size_t size = load<std::uint32_t>(bytes_, at);
-      const std::uint32_t kind = load<std::uint32_t>(bytes_, at + 4);
-      at += 8;
-      if (size > bytes_.size() - at)
-        fail("a chunk declares " + std::to_string(size) + " bytes, the file has " + std::to_string(bytes_.size() - at) +
-             " left");
-      if (kind == kJsonChunk && size > kLongestJson)
-        fail("the JSON chunk must have at most " + std::to_string(kLongestJson) + " bytes, got " +
-             std::to_string(size));
-      if (kind == kJsonChunk && text.empty()) text = bytes_.substr(at, size);
-      if (kind == kBinaryChunk && binary_.empty()) binary_ = bytes_.substr(at, size);
-      at += size;
-    }
-    try {
-      json_ = Json::parse(text);
-    } catch (const Json::exception& error) {
-      fail("glTF JSON: " + excerpt(error.what(), 160));
-    }
-    if (!json_.is_object()) fail("glTF JSON: must be an object");
-  }
-
   // Extensions without which the geometry would be read wrong.
   void refuse_extensions() const {
-    for (const Json& extension : list(json_, "extensionsRequired")) {
+    for (const Json& extension : list(json(), "extensionsRequired")) {
       const std::string name = extension.get<std::string>();
       if (name == "KHR_draco_mesh_compression" || name == "EXT_meshopt_compression" || name == "KHR_mesh_quantization")
         fail("needs the glTF extension " + name + ", which is not supported");
     }
   }
 
-  // Values are never copied or printed whole: a hostile file nests them deeper than the stack.
-  std::size_t whole(const Json& value, const char* name) const {
-    if (!value.is_number_unsigned())
-      fail(std::string(name) + " must be a whole number from 0, got " +
-           (value.is_number() ? value.dump() : value.type_name()));
-    return value.get<std::size_t>();
-  }
-  std::size_t member(const Json& object, const char* key, std::optional<std::size_t> otherwise = {}) const {
-    return otherwise && !object.contains(key) ? *otherwise : whole(object.at(key), key);
-  }
-
-  // An array, empty where there is none.
-  const Json& list(const Json& object, const char* key) const {
-    static const Json none = Json::array();
-    if (!object.contains(key)) return none;
-    if (!object.at(key).is_array()) fail(std::string(key) + " must be an array, got " + object.at(key).type_name());
-    return object.at(key);
-  }
-
-  const Json& item(const char* array, std::size_t index) const {
-    const Json& items = list(json_, array);
-    if (index >= items.size()) fail(std::string(array) + "[" + std::to_string(index) + "] does not exist");
-    return items[index];
-  }
-
   // The nodes of the scene, or without scenes all that are no other node's children.
   std::vector<std::size_t> roots() const {
     std::vector<std::size_t> all;
-    if (json_.contains("scenes")) {
-      for (const Json& node : list(item("scenes", member(json_, "scene", 0)), "nodes"))
+    if (json().contains("scenes")) {
+      for (const Json& node : list(item("scenes", member(json(), "scene", 0)), "nodes"))
         all.push_back(whole(node, "a scene's node"));
       return all;
     }
     std::vector<bool> is_child(visited_.size());
-    for (const Json& node : list(json_, "nodes"))
+    for (const Json& node : list(json(), "nodes"))
       for (const Json& child : list(node, "children")) {
         const std::size_t index = whole(child, "a node's child");
         if (index < is_child.size()) is_child[index] = true;
@@ -170,7 +231,7 @@ class GlbReader {
 
   // Before memory is filled.
   void check_size() {
-    const std::size_t most = std::max(kMost, bytes_.size() / sizeof(Triangle));
+    const std::size_t most = std::max(kMost, size() / sizeof(Triangle));
     std::size_t vertices = 0, corners = 0;
     for (const auto& [primitive, place] : placed_) {
       const std::size_t count = positions(*primitive).count;
@@ -218,9 +279,43 @@ class GlbReader {
       mesh_.positions.push_back(world);
     }
     std::vector<int> corners = this->corners(primitive, positions.count);
+    const auto mode = static_cast<Mode>(member(primitive, "mode", kTriangles));
+    const bool mirrored = place.linear().determinant() < 0;
+    if (textured_) {
+      // Texture coordinates are numbered as the file's vertices, so its corners are theirs too.
+      const int first = read_uvs(primitive, positions.count);
+      add_triangles(corners, mode, first, mirrored, result_.uv_triangles);
+    }
     if (primitive.at("attributes").contains("TEXCOORD_0")) merge_equal(base, corners);
-    add_triangles(corners, static_cast<Mode>(member(primitive, "mode", kTriangles)), base,
-                  place.linear().determinant() < 0);
+    add_triangles(corners, mode, base, mirrored, mesh_.triangles);
+  }
+
+  int read_uvs(const Json& primitive, std::size_t vertices) {
+    if (!primitive.at("attributes").contains("TEXCOORD_0")) fail("every primitive must have texture coordinates");
+    const Accessor uvs = accessor(member(primitive.at("attributes"), "TEXCOORD_0"), "VEC2");
+    if (uvs.component != kFloat || uvs.count != vertices) fail("TEXCOORD_0 must be of floats, one a vertex");
+    const int first = static_cast<int>(result_.uvs.size());
+    for (std::size_t i = 0; i < uvs.count; ++i) {
+      const std::size_t at = uvs.begin + i * uvs.stride;
+      result_.uvs.emplace_back(load<float>(uvs.bytes, at), load<float>(uvs.bytes, at + 4));
+      if (!result_.uvs.back().allFinite()) fail("TEXCOORD_0 " + std::to_string(i) + " must be finite");
+    }
+    return first;
+  }
+
+  // The one picture that all primitives' materials have as their base colour.
+  void read_picture() {
+    std::vector<std::size_t> images;
+    for (const auto& [primitive, place] : placed_) {
+      const Json& surface = item("materials", member(*primitive, "material")).at("pbrMetallicRoughness");
+      const Json& texture = item("textures", member(surface.at("baseColorTexture"), "index"));
+      images.push_back(member(texture, "source"));
+      if (images.back() != images.front()) fail("has more than one picture, which is not supported");
+    }
+    if (images.empty()) fail("has no triangles");
+    const Json& image = item("images", images.front());
+    if (!image.contains("bufferView")) fail("its picture lies outside the file, which is not supported");
+    result_.texture = decode_image(std::string(view(member(image, "bufferView"))), path_);
   }
 
   // Joins what texture coordinates have split: of the vertices from `base` on at one position only the first stays.
@@ -267,7 +362,8 @@ class GlbReader {
     return all;
   }
 
-  void add_triangles(const std::vector<int>& corners, Mode mode, int base, bool mirrored) {
+  void add_triangles(const std::vector<int>& corners, Mode mode, int base, bool mirrored,
+                     std::vector<Triangle>& to) const {
     if (mode == kTriangles && corners.size() % 3 != 0)
       fail("the number of indices must be a multiple of 3, got " + std::to_string(corners.size()));
     const std::size_t step = mode == kTriangles ? 3 : 1;
@@ -275,51 +371,25 @@ class GlbReader {
       Triangle t{corners[mode == kFan ? 0 : i], corners[i + 1], corners[i + 2]};
       if ((mode == kStrip && i % 2 == 1) != mirrored) std::swap(t[1], t[2]);
       for (int& corner : t) corner += base;
-      mesh_.triangles.push_back(t);
+      to.push_back(t);
     }
   }
 
-  Accessor accessor(std::size_t index, const std::string& type) const {
-    const std::string name = "accessors[" + std::to_string(index) + "]";
-    const Json& json = item("accessors", index);
-    if (json.at("type").get<std::string>() != type) fail(name + " must be of type " + type);
-    if (!json.contains("bufferView") || json.contains("sparse"))
-      fail(name + " is sparse or compressed, which is not supported");
-    const Json& view = item("bufferViews", member(json, "bufferView"));
-    const std::size_t buffer = member(view, "buffer");
-    if (buffer != 0 || item("buffers", buffer).contains("uri"))
-      fail(name + " lies outside the file's binary chunk, which is not supported");
-    const int component = static_cast<int>(member(json, "componentType"));
-    const std::size_t size = component == kUnsignedByte                         ? 1
-                             : component == kUnsignedShort                      ? 2
-                             : component == kUnsignedInt || component == kFloat ? 4
-                                                                                : 0;
-    if (size == 0 || (type == "SCALAR" && component == kFloat))
-      fail(name + ": componentType " + std::to_string(component) + " is not supported");
-    const std::size_t element = size * (type == "VEC3" ? 3 : 1);
-    Accessor result{binary_, member(json, "byteOffset", 0), member(view, "byteStride", element), member(json, "count"),
-                    component};
-    const std::size_t view_begin = member(view, "byteOffset", 0), view_size = member(view, "byteLength");
-    const bool inside = view_begin <= binary_.size() && view_size <= binary_.size() - view_begin &&
-                        result.begin <= view_size && result.stride >= element && result.stride <= 252 + element;
-    const std::size_t room = inside ? view_size - result.begin : 0;
-    if (!inside || (result.count > 0 && (element > room || result.count - 1 > (room - element) / result.stride)))
-      fail(name + ": " + std::to_string(result.count) + " elements do not fit into its bufferView and the file");
-    result.begin += view_begin;
-    return result;
-  }
-
   const std::string& path_;
-  std::string_view bytes_, binary_;
-  Json json_;
+  bool textured_;
   std::vector<bool> visited_;  // nodes
   std::size_t primitives_ = 0;
   std::vector<std::pair<const Json*, Eigen::Affine3d>> placed_ = {};  // the scene's primitives of triangles
-  Mesh mesh_;
+  TexturedMesh result_;
+  Mesh& mesh_ = result_.mesh;
 };
 
 }  // namespace
 
-Mesh read_glb(const std::string& path, std::string_view bytes) { return GlbReader(path, bytes).read(); }
+Mesh read_glb(const std::string& path, std::string_view bytes) { return GlbReader(path, bytes, false).read().mesh; }
+
+TexturedMesh read_textured_glb(const std::string& path, std::string_view bytes) {
+  return GlbReader(path, bytes, true).read();
+}
 
 }  // namespace carve::formats

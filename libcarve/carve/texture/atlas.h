@@ -29,6 +29,12 @@ struct Atlas {
 /// drawing is of the side across, so a texel can be one pixel. Parts no drawing shows are laid out at half the density.
 Charts view_charts(const Mesh& mesh, const ViewSet& views, const ViewChoice& choice);
 
+/// Charts by planarity and compactness, the thesis's arm \cite sander_2001: beginning with single triangles, the two
+/// neighbours that make the flattest and roundest chart are joined, until options.max_clusters are left or none would
+/// stay within options.max_distortion of a plane (root mean square). A chart is its projection onto that plane; its
+/// triangles look at most 75 degrees away from it, so none is laid face down and none is stretched more than 3.9 times.
+Charts cluster_charts(const Mesh& mesh, const ViewSet& views, const AtlasOptions& options = {});
+
 /// Packs charts into a square, options.gutter texels apart, at one scale: with options.exact the largest whole number
 /// that fits, if 1 does; else the largest found. Triangles on whose texels others of their chart lie get charts of
 /// their own, so that no texel's centre lies in two triangles. \throws NoResult if the charts do not fit at any scale

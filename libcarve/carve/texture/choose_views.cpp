@@ -58,9 +58,10 @@ std::vector<Vec3> smoothed_normals(const Mesh& mesh, const std::vector<Vec3>& no
 
 class Chooser {
  public:
-  Chooser(const Mesh& mesh, const ViewSet& views, const TextureOptions& options)
+  Chooser(const Mesh& mesh, const ViewSet& views, const Drawings& drawings, const TextureOptions& options)
       : mesh_(mesh),
         views_(views),
+        drawings_(drawings),
         options_(options),
         normals_(triangle_normals(mesh)),
         smooth_(smoothed_normals(mesh, normals_)),
@@ -96,10 +97,42 @@ class Chooser {
   void fill_costs(const std::vector<Projection>& projections, PottsProblem& problem) const {
     problem.costs.resize(mesh_.triangles.size() * projections.size());
     parallel_ranges(0, static_cast<int>(mesh_.triangles.size()), 2048, [&](int first, int last) {
-      for (int t = first; t < last; ++t)
-        for (std::size_t p = 0; p < projections.size(); ++p)
-          problem.costs[t * projections.size() + p] = cost(t, projections[p]);
+      std::vector<Witness> witnesses;
+      for (int t = first; t < last; ++t) {
+        int* costs = &problem.costs[t * projections.size()];
+        witnesses.clear();
+        for (std::size_t p = 0; p < projections.size(); ++p) {
+          costs[p] = cost(t, projections[p]);
+          const bool direct = projections[p].view >= 0 && !is_across(projections[p]);
+          if (direct && costs[p] < PottsProblem::kImpossible)
+            witnesses.push_back({along(normals_[t], projections[p].toward), colour(t, projections[p].view)});
+        }
+        for (std::size_t p = 0; p < projections.size() && !witnesses.empty(); ++p)
+          if (costs[p] < PottsProblem::kImpossible)
+            costs[p] += scaled(options_.agree * areas_[t] * contradiction(witnesses, t, projections[p].view));
+      }
     });
+  }
+
+  // What a drawing that sees a triangle shows there, and how much of it.
+  struct Witness {
+    double cosine;
+    Colour colour;
+  };
+  Colour colour(int t, int view) const {
+    return drawings_.at({{{view, 1}, {}, {}}}, (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3);
+  }
+  // Taking no drawing where one could be taken is as wrong as a colour can be.
+  double contradiction(const std::vector<Witness>& witnesses, int t, int view) const {
+    constexpr double kLargest = 441.7;  // black to white
+    const Colour taken = view < 0 ? Colour(Colour::Zero()) : colour(t, view);
+    double sum = 0;
+    for (const Witness& witness : witnesses)
+      sum += witness.cosine * (view < 0 ? kLargest : (witness.colour - taken).norm()) / 255;
+    return sum;
+  }
+  bool is_across(const Projection& projection) const {
+    return projection.toward.sign != frame(views_.views[projection.view].view).toward.sign;
   }
 
   int cost(int t, const Projection& projection) const {
@@ -111,16 +144,14 @@ class Chooser {
     }
     if (straight < std::cos(options_.steepest * std::numbers::pi / 180) || !sees(t, projection, straight))
       return PottsProblem::kImpossible;
-    const bool across = projection.toward.sign != frame(views_.views[projection.view].view).toward.sign;
-    return scaled(areas_[t] * (angle + (across ? kAcross : 0)));
+    return scaled(areas_[t] * (angle + (is_across(projection) ? kAcross : 0)));
   }
 
   // Three of four points of the triangle lie on the nearest (for the side across: farthest) surface.
   bool sees(int t, const Projection& projection, double straight) const {
     const DepthMap& map = maps_[projection.view];
-    const View view = views_.views[projection.view].view;
-    const SignedAxis toward = frame(view).toward;
-    const bool across = projection.toward.sign != toward.sign;
+    const SignedAxis toward = frame(views_.views[projection.view].view).toward;
+    const bool across = is_across(projection);
     const bool anywhere = !across || options_.mirror == Mirror::yes || (toward.axis == 0 && symmetric_);
     // A surface seen at an angle differs in depth within a pixel.
     const double slope = std::min(4.0, std::sqrt(1 - straight * straight) / straight);
@@ -171,6 +202,7 @@ class Chooser {
 
   const Mesh& mesh_;
   const ViewSet& views_;
+  const Drawings& drawings_;
   const TextureOptions& options_;
   std::vector<Vec3> normals_, smooth_;
   std::vector<std::array<int, 3>> neighbours_;
@@ -198,9 +230,10 @@ bool is_symmetric(const ViewSet& views) {
   return either > 0 && static_cast<double>(both) >= 0.85 * static_cast<double>(either);
 }
 
-ViewChoice choose_views(const Mesh& mesh, const ViewSet& views, const TextureOptions& options) {
+ViewChoice choose_views(const Mesh& mesh, const ViewSet& views, const Drawings& drawings,
+                        const TextureOptions& options) {
   check("texture", options);
-  return Chooser(mesh, views, options).choose();
+  return Chooser(mesh, views, drawings, options).choose();
 }
 
 }  // namespace carve

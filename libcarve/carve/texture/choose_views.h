@@ -2,8 +2,7 @@
 #include <vector>
 
 #include "carve/mesh/mesh.h"
-#include "carve/texture/options.h"
-#include "carve/views/view_set.h"
+#include "carve/texture/drawings.h"
 
 namespace carve {
 
@@ -30,7 +29,8 @@ struct ViewChoice {
 /// where it sees the triangle (DepthMap; 3 of 4 points) at most at options.steepest; a drawing of the side across only
 /// as options.mirror says. What nothing can colour is projected along the best of the six axes, seen at 55 degrees at
 /// most. \throws std::invalid_argument on an option out of range or a mesh that check_mesh refuses
-ViewChoice choose_views(const Mesh& mesh, const ViewSet& views, const TextureOptions& options = {});
+ViewChoice choose_views(const Mesh& mesh, const ViewSet& views, const Drawings& drawings,
+                        const TextureOptions& options = {});
 
 /// Whether the drawings that show left and right, seen in a mirror, are the same shapes (IoU of at least 0.85).
 bool is_symmetric(const ViewSet& views);

@@ -30,10 +30,11 @@ struct TextureOptions {
   Mirror mirror = Mirror::automatic;
   bool inpaint = true;
   int fringe = 1;
-  double seam = 0.005;
+  double agree = 3;
+  double seam = 0.003;
   double steepest = 84;
   double thin = 0.06;
-  double level = 48;
+  double level = 32;
 };
 template <class Visitor>
 void visit_fields(TextureOptions& o, Visitor&& field) {
@@ -41,6 +42,8 @@ void visit_fields(TextureOptions& o, Visitor&& field) {
   field("mirror", o.mirror, "whether sides that were not drawn take the drawing of the side across");
   field("inpaint", o.inpaint, "strokes and rims give way to the colours beside them");
   field("fringe", o.fringe, 0, 16, "width of the rim beside strokes and background that is not trusted, pixels");
+  field("agree", o.agree, 0.0, 100.0,
+        "how much it counts that the drawing taken agrees with the others that see a triangle");
   field("seam", o.seam, 0.0, 1.0, "cost of a seam's length against the area that is seen at an angle, object units");
   field("steepest", o.steepest, 60.0, 89.0, "largest angle at which a drawing still colours a triangle, degrees");
   field("thin", o.thin, 0.0, 1.0, "how thick a part may be whose back takes the drawing of its front, object units");
@@ -49,7 +52,7 @@ void visit_fields(TextureOptions& o, Visitor&& field) {
 
 enum class AtlasArm {
   view_charts,  // a chart = connected triangles that take the same drawing, laid out as drawn
-  clusters      // charts by planarity and compactness, flattened: the thesis's
+  clusters      // charts by planarity and compactness, laid onto their planes: the thesis's
 };
 inline std::span<const char* const> names(AtlasArm) {
   static constexpr const char* all[] = {"view_charts", "clusters"};
@@ -70,8 +73,10 @@ void visit_fields(AtlasOptions& o, Visitor&& field) {
   field("size", o.size, 16, 8192, "texels along the texture's side");
   field("gutter", o.gutter, 1, 64, "least texels between two charts");
   field("exact", o.exact, "a texel is a pixel of the drawing, or a whole part of one, where the charts fit so");
-  field("max_distortion", o.max_distortion, 1e-4, 1.0, "clusters: largest mean distance from a plane, object units");
-  field("max_clusters", o.max_clusters, 1, 100000, "clusters: most charts before those that must be split");
+  field("max_distortion", o.max_distortion, 1e-4, 1.0,
+        "clusters: largest root mean square distance of a chart from its plane, object units");
+  field("max_clusters", o.max_clusters, 1, 100000,
+        "clusters: charts are joined until there are so few, as far as max_distortion lets them");
 }
 
 }  // namespace carve

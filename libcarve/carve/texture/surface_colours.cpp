@@ -182,8 +182,9 @@ void SurfaceColours::find_seams(double largest, SeamGraph& graph) const {
 }
 
 void SurfaceColours::level(double largest) {
-  constexpr int kReach = 6;      // edges; beyond, nothing changes
-  constexpr double kSeam = 100;  // how much more a seam weighs than an edge
+  constexpr int kReach = 6;       // edges; beyond, nothing changes
+  constexpr double kSeam = 100;   // how much more a seam weighs than an edge
+  constexpr double kStay = 0.05;  // pull to no change: patches that are nothing but seams stay about where they are
   SeamGraph graph(mesh_, around_, patch_);
   find_seams(largest, graph);
   if (std::ranges::all_of(graph.seams, [](const SeamGraph::Seam& s) { return s.difference.isZero(); })) return;
@@ -197,6 +198,7 @@ void SurfaceColours::level(double largest) {
       entries.emplace_back(i, i, 1);
       continue;
     }
+    entries.emplace_back(i, i, kStay);
     graph.for_each_neighbour(graph.nodes[i], [&](int v, int t) {
       const int j = graph.find(v, t);
       entries.emplace_back(i, i, 1);

@@ -15,11 +15,14 @@ TexturedMesh texture(Mesh mesh, const ViewSet& views, const TextureOptions& opti
     throw std::invalid_argument("texture.arm must be blend or best_view to make a texture");
   if (mesh.triangles.empty()) throw std::invalid_argument("the mesh to be textured must have triangles");
 
-  const ViewChoice choice = choose_views(mesh, views, options);
-  monitor.at("texture", 0.3);
-  Atlas atlas = lay_out(mesh, view_charts(mesh, views, choice), atlas_options);
-  monitor.at("texture", 0.6);
   const Drawings drawings(views, options);
+  const ViewChoice choice = choose_views(mesh, views, drawings, options);
+  monitor.at("texture", 0.3);
+  Atlas atlas = lay_out(mesh,
+                        atlas_options.arm == AtlasArm::clusters ? cluster_charts(mesh, views, atlas_options)
+                                                                : view_charts(mesh, views, choice),
+                        atlas_options);
+  monitor.at("texture", 0.6);
   const bool blend = options.arm == TextureArm::blend;
   const std::vector<Paint> paints = blend ? paint_by_normal(mesh, views, options.mirror) : paint_by_view(choice);
   const CornerColours corners = surface_colours(mesh, paints, choice.patch, drawings, blend ? 0 : options.level);

@@ -1,0 +1,118 @@
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cstdio>
+#include <numeric>
+#include <ostream>
+
+#include "carve/mesh/neighbours.h"
+#include "eval/render.h"
+#include "eval/texture_scores.h"
+
+namespace carve {
+namespace {
+
+std::int64_t count_charts(const TexturedMesh& model) {
+  std::vector<int> root(model.uvs.size());
+  std::iota(root.begin(), root.end(), 0);
+  const auto find = [&](int i) {
+    while (root[i] != i) i = root[i] = root[root[i]];
+    return i;
+  };
+  std::vector<char> used(root.size());
+  for (const auto& [a, b, c] : model.uv_triangles) {
+    used[a] = used[b] = used[c] = 1;
+    root[find(a)] = find(b);
+    root[find(c)] = find(b);
+  }
+  std::int64_t count = 0;
+  for (std::size_t i = 0; i < root.size(); ++i) count += used[i] && root[i] == static_cast<int>(i);
+  return count;
+}
+
+// From a triangle's own plane to the texture; positive determinant = face up.
+Eigen::Matrix2d jacobian(const TexturedMesh& model, std::size_t t) {
+  const Vec3& origin = model.mesh.positions[model.mesh.triangles[t][0]];
+  const Vec3 p = model.mesh.positions[model.mesh.triangles[t][1]] - origin;
+  const Vec3 q = model.mesh.positions[model.mesh.triangles[t][2]] - origin;
+  const Vec3 x = p.stableNormalized(), y = p.cross(q).cross(p).stableNormalized();
+  Eigen::Matrix2d world, texture;
+  world << p.dot(x), q.dot(x), p.dot(y), q.dot(y);
+  const auto& [a, b, c] = model.uv_triangles[t];
+  const Vec2 u = model.uvs[b] - model.uvs[a], v = model.uvs[c] - model.uvs[a];
+  texture << u.x(), v.x(), -u.y(), -v.y();  // v points down
+  return texture * world.inverse();
+}
+
+void score_distortion(const TexturedMesh& model, AtlasScores& scores) {
+  struct Triangle2 {
+    double area, stretch, shrink;  // squared norms of the Jacobian and of its inverse
+  };
+  std::vector<Triangle2> all;
+  double area = 0, texture_area = 0;
+  for (std::size_t t = 0; t < model.mesh.triangles.size(); ++t) {
+    const auto& [a, b, c] = model.mesh.triangles[t];
+    const Vec3& origin = model.mesh.positions[a];
+    const double here = (model.mesh.positions[b] - origin).cross(model.mesh.positions[c] - origin).norm() / 2;
+    if (here < 1e-14) continue;
+    const Eigen::Matrix2d j = jacobian(model, t);
+    const double determinant = j.determinant();
+    if (!(determinant > 1e-9)) {
+      ++scores.flipped;
+      continue;
+    }
+    all.push_back({here, j.squaredNorm(), j.inverse().squaredNorm()});
+    area += here;
+    texture_area += here * determinant;
+  }
+  scores.packing = texture_area;
+  if (area == 0 || texture_area == 0) return;
+  const double scale = area / texture_area;  // squared
+  for (const Triangle2& t : all) scores.distortion += t.area / area * (t.stretch * scale + t.shrink / scale);
+}
+
+void score_seams(const TexturedMesh& model, AtlasScores& scores) {
+  const auto neighbours = triangle_neighbours(model.mesh);
+  double contrast = 0;
+  for (int t = 0; t < static_cast<int>(neighbours.size()); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const int other = neighbours[t][k];
+      if (other <= t) continue;
+      const int from = model.mesh.triangles[t][k], to = model.mesh.triangles[t][(k + 1) % 3];
+      const auto uv = [&](int triangle, int vertex) {
+        const Triangle& corners = model.mesh.triangles[triangle];
+        return model.uv_triangles[triangle][corners[0] == vertex ? 0 : corners[1] == vertex ? 1 : 2];
+      };
+      const int a = uv(t, from), b = uv(t, to), c = uv(other, from), d = uv(other, to);
+      if (a == c && b == d) continue;
+      const double length = (model.mesh.positions[from] - model.mesh.positions[to]).norm();
+      scores.seam_length += length;
+      const Colour here = texture_at(model.texture, (model.uvs[a] + model.uvs[b]) / 2);
+      const Colour there = texture_at(model.texture, (model.uvs[c] + model.uvs[d]) / 2);
+      contrast += length * (here - there).norm();
+    }
+  if (scores.seam_length > 0) scores.seam_contrast = contrast / scores.seam_length;
+}
+
+}  // namespace
+
+AtlasScores atlas_scores(const TexturedMesh& model) {
+  AtlasScores scores;
+  scores.charts = count_charts(model);
+  score_distortion(model, scores);
+  score_seams(model, scores);
+  return scores;
+}
+
+std::ostream& operator<<(std::ostream& out, const AtlasScores& s) {
+  char text[400];
+  std::snprintf(
+      text, sizeof text,
+      "charts           %lld\npacking          %.4f\ndistortion       %.4f   mean symmetric Dirichlet energy, 4 = "
+      "isometric\nflipped          %lld\nseam length      %.4f\nseam contrast    %.3f   RGB distance\n",
+      static_cast<long long>(s.charts), s.packing, s.distortion, static_cast<long long>(s.flipped), s.seam_length,
+      s.seam_contrast);
+  return out << text;
+}
+
+}  // namespace carve
