@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
 #include <unordered_map>
 
 namespace carve {
@@ -48,6 +49,45 @@ class JumpCost {
   double n_;
   CellWeights weights_;
 };
+
+/// What a pixel costs in which two views show a cell in colours that differ for certain.
+std::vector<std::array<std::int64_t, 15>> clashes(const Cells& cells, std::span<const RegionMap> views, double weight) {
+  constexpr double kSame = 30, kOther = 90;  // largest difference of a channel, of 255
+  std::vector<std::array<std::int64_t, 15>> out(cells.count);
+  for (int c = 0; c < cells.count; ++c) {
+    out[c].fill(0);
+    for (std::size_t v = 1, pair = 0; v < views.size(); ++v)
+      for (std::size_t w = 0; w < v; ++w, ++pair) {
+        const Vec3 difference = views[v].colour[cells.regions[c][v]] - views[w].colour[cells.regions[c][w]];
+        out[c][pair] =
+            std::llround(CellProblem::kUnit * weight * ramp(difference.cwiseAbs().maxCoeff(), kSame, kOther));
+      }
+  }
+  return out;
+}
+
+/// Per cell, the one that takes its place when the solid is mirrored left-right: they cover each other all but for a
+/// voxel at their borders. -1: none, or itself. A drawing that is not symmetric cuts cells that have none.
+std::vector<int> mirror_images(const Cells& cells, const Vec3i& size) {
+  std::vector<std::size_t> begin(static_cast<std::size_t>(size.y()) * size.z() + 1, 0);
+  for (const CellRun& run : cells.runs) ++begin[static_cast<std::size_t>(run.z) * size.y() + run.y + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<std::unordered_map<int, std::int64_t>> shared(cells.count);
+  for (const CellRun& run : cells.runs) {
+    const std::size_t row = static_cast<std::size_t>(run.z) * size.y() + run.y;
+    const int x0 = size.x() - run.x1, x1 = size.x() - run.x0;
+    for (std::size_t k = begin[row]; k < begin[row + 1]; ++k) {
+      const CellRun& other = cells.runs[k];
+      if (const int both = std::min(x1, other.x1) - std::max(x0, other.x0); both > 0)
+        shared[run.cell][other.cell] += both;
+    }
+  }
+  std::vector<int> image(cells.count, -1);
+  for (int c = 0; c < cells.count; ++c)
+    for (const auto& [other, voxels] : shared[c])
+      if (other != c && voxels > 0.7 * std::max(cells.volume[c], cells.volume[other])) image[c] = other;
+  return image;
+}
 
 }  // namespace
 
@@ -126,8 +166,14 @@ CellProblem::CellProblem(const Cells& cells, const Vec3i& size, std::span<const 
   class_mark_.assign(classes_.size(), 0);
   group_mark_.assign(groups_.size(), 0);
   touch_mark_.assign(cells.count, 0);
-  buried_now_.assign(cells.count, 0);
+  clash_ = clashes(cells, views, weights.agreement);
+  symmetry_ = weights.symmetry;
+  mirror_ = weights.symmetry > 0 ? mirror_images(cells, size) : std::vector<int>(cells.count, -1);
   touched_.clear();
+  for (int c = 0; c < cells.count; ++c) {
+    own_now_.push_back(own_cost(c));
+    energy_ += own_now_.back();
+  }
 }
 
 int CellProblem::first_of(const Class& c) const {
@@ -150,12 +196,20 @@ void CellProblem::set_open(const Class& c, int from, int to, int sign) {
   }
 }
 
-std::int64_t CellProblem::buried_cost(int cell) const {
-  if (keep_[cell]) return 0;
-  double seen = 0;
-  for (const Sight& s : sight_[cell])
-    if (s.pixels > 0) seen += static_cast<double>(s.open) / s.pixels;
-  return std::llround(kUnit * buried_ * volume_[cell] * std::max(0.0, 2 - seen));
+/// Of a dropped cell: how far it is from being seen empty in two views. Of a kept one: colours that disagree.
+std::int64_t CellProblem::own_cost(int cell) const {
+  const auto& sight = sight_[cell];
+  if (!keep_[cell]) {
+    double seen = 0;
+    for (const Sight& s : sight)
+      if (s.pixels > 0) seen += static_cast<double>(s.open) / s.pixels;
+    return std::llround(kUnit * buried_ * volume_[cell] * std::max(0.0, 2 - seen));
+  }
+  std::int64_t cost = 0;
+  for (int v = 1, pair = 0; v < 6; ++v)
+    for (int w = 0; w < v; ++w, ++pair)
+      if (clash_[cell][pair]) cost += clash_[cell][pair] * std::min(sight[v].open, sight[w].open);
+  return cost;
 }
 
 std::int64_t CellProblem::flip(std::span<const int> cells) {
@@ -165,6 +219,10 @@ std::int64_t CellProblem::flip(std::span<const int> cells) {
   for (const int c : cells) {
     keep_[c] ^= 1;
     energy_ += keep_[c] ? -volume_cost_[c] : volume_cost_[c];
+    if (const int m = mirror_[c]; m >= 0) {
+      const std::int64_t cost = std::llround(kUnit * symmetry_ * std::min(volume_[c], volume_[m]));
+      energy_ += keep_[c] != keep_[m] ? cost : -cost;
+    }
     for (const Contact& contact : contacts_[c]) {
       const bool other = contact.other >= 0 && keep_[contact.other];
       energy_ += (keep_[c] != other) ? contact.cost : -contact.cost;
@@ -200,8 +258,8 @@ std::int64_t CellProblem::flip(std::span<const int> cells) {
   for (const int c : touched_) {
     if (touch_mark_[c] == stamp_) continue;
     touch_mark_[c] = stamp_;
-    energy_ -= buried_now_[c];
-    energy_ += buried_now_[c] = buried_cost(c);
+    energy_ -= own_now_[c];
+    energy_ += own_now_[c] = own_cost(c);
   }
   touched_.clear();
   return energy_ - before;

@@ -16,6 +16,8 @@ struct CellWeights {
   double volume = 0.0001;  // a dropped voxel
   double buried = 0.0025;  // a dropped voxel, times the views that it lacks to be seen empty in two
   double silhouette = 8;   // a pixel whose ray meets no voxel any more
+  double agreement = 0.1;  // a pixel of a cell that two views show in different colours
+  double symmetry = 0.01;  // a voxel that differs from its mirror image
 };
 
 template <class Visitor>
@@ -28,6 +30,9 @@ void visit_fields(CellWeights& o, Visitor&& field) {
   field("volume", o.volume, 0.0, 1e3, "cost of carving, a voxel");
   field("buried", o.buried, 0.0, 1e3, "cost of carving what fewer than two views see empty, a voxel and missing view");
   field("silhouette", o.silhouette, 0.0, 1e6, "cost of a pixel whose ray meets no voxel any more");
+  field("agreement", o.agreement, 0.0, 1e3, "cost of showing a cell to two views in different colours, a grid pixel");
+  field("symmetry", o.symmetry, 0.0, 1e3,
+        "cost of carving one of two cells that the drawings show as mirror images, a voxel");
 }
 
 /// The energy of keeping or dropping each cell, as a sum over few distinct rays.
@@ -45,6 +50,7 @@ class CellProblem {
   std::int64_t energy() const { return energy_; }
   std::int64_t misfit() const { return misfit_; }  // of it, what the drawings ask for: strokes and silhouettes
   std::int64_t flip(std::span<const int> cells);   // toggles them; the change of energy
+  int mirror(int cell) const { return mirror_[cell]; }  // its mirror image; -1: none, or itself
 
  private:
   struct Class {
@@ -67,7 +73,7 @@ class CellProblem {
     std::int64_t pixels = 0, open = 0;  // rays that meet the cell; those that meet nothing before it
   };
   int first_of(const Class& c) const;
-  std::int64_t buried_cost(int cell) const;
+  std::int64_t own_cost(int cell) const;
   void set_open(const Class& c, int from, int to, int sign);
   std::int64_t value_of(const Group& g) const;
 
@@ -81,7 +87,10 @@ class CellProblem {
   std::vector<std::int64_t> volume_cost_, volume_;
   double buried_ = 0;
   std::vector<std::array<Sight, 6>> sight_;  // per cell and view
-  std::vector<std::int64_t> buried_now_;
+  std::vector<std::int64_t> own_now_;
+  std::vector<std::array<std::int64_t, 15>> clash_;  // per cell and pair of views: cost of a pixel shown in both
+  std::vector<int> mirror_;
+  double symmetry_ = 0;
   std::vector<int> touched_, touch_mark_;
   std::vector<int> class_mark_, group_mark_;
   int stamp_ = 0;

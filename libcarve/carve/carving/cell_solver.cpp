@@ -105,7 +105,20 @@ class Search {
     return true;
   }
 
-  void try_move(const std::vector<int>& move) {
+  /// Adds the mirror images of the move's cells, as far as they stand as these do.
+  void mirror(std::vector<int>& move) {
+    ++stamp_;
+    for (const int c : move) mark_[c] = stamp_;
+    for (std::size_t k = 0, n = move.size(); k < n; ++k) {
+      const int m = problem_.mirror(move[k]);
+      if (m < 0 || mark_[m] == stamp_ || problem_.keep()[m] != problem_.keep()[move[k]]) continue;
+      mark_[m] = stamp_;
+      move.push_back(m);
+    }
+  }
+
+  void try_move(std::vector<int>& move) {
+    mirror(move);
     const std::int64_t energy = problem_.energy();
     nodes_ += static_cast<std::int64_t>(move.size());
     problem_.flip(move);
@@ -130,9 +143,8 @@ class Search {
         try_levels(column);
       }
       for (int c = 0; c < problem_.cells() && !ended(); ++c) {
-        const std::int64_t energy = problem_.energy();
-        flip(c);
-        if (problem_.energy() >= energy) flip(c);
+        move.assign(1, c);
+        try_move(move);
       }
     }
   }
@@ -180,6 +192,7 @@ class Search {
       const double done = static_cast<double>(nodes_ - start) / steps;
       const double temperature = CellProblem::kUnit * kHot * std::pow(kCold / kHot, done);
       random_move(move);
+      mirror(move);
       const std::int64_t energy = problem_.energy();
       problem_.flip(move);
       const std::int64_t change = problem_.energy() - energy;
