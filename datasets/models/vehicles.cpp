@@ -1,4 +1,5 @@
 // Car and wagon.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -55,13 +56,14 @@ Model wagon() {
   Model model;
   add(model, "board", kBoard, box({-0.40, 0.30, -0.70}, {0.40, 0.38, 0.70}));
   add_pair(model, "plank", kPlank, box({0.345, 0.302, -0.698}, {0.42, 0.72, 0.702}));
-  add(model, "back", Rgba{206, 164, 110}, box({-0.36, 0.303, -0.704}, {0.36, 0.74, -0.62}));
+  add(model, "back", Rgba{206, 164, 110}, box({-0.36, 0.303, -0.704}, {0.36, 0.74, -0.61}));
   for (const double z : {-0.44, 0.44}) {
     add(model, "iron", kIron, cylinder({-0.50, 0.20, z}, {0.50, 0.20, z}, 0.035, 32));
     std::vector<Vec2> behind_wheel;  // (y, z)
-    for (int i = 0; i <= 32; ++i) {
-      const double angle = std::numbers::pi * i / 32;
-      behind_wheel.push_back({0.175 + 0.195 * std::sin(angle), z + 0.198 * std::cos(angle)});
+    const double down = std::asin(0.035 / 0.2);
+    for (int i = 0; i <= 40; ++i) {
+      const double angle = -down + (std::numbers::pi + 2 * down) * i / 40;
+      behind_wheel.push_back({std::min(0.31, 0.20 + 0.2 * std::sin(angle)), z + 0.2 * std::cos(angle)});
     }
     add(model, "iron", kIron, prism(behind_wheel, 0, -0.43, 0.43));
     add_pair(model, "wheel", kRed, cylinder({0.43, 0.20, z}, {0.52, 0.20, z}, 0.20));

@@ -107,6 +107,24 @@ TEST(Consistency, TheClockEndsASearchOnlyWhereAsked) {
   EXPECT_TRUE(apply_consistency(hull, views).in_time);
 }
 
+TEST(Consistency, SymmetricDrawingsGiveSymmetricSolids) {
+  for (const BoxWorld& world : {couch(), walled_stairs_world(5)}) {
+    const ViewSet views = views_of(world, kThreeViews);
+    const VoxelGrid solid = apply_consistency(carve_silhouettes(views, {.grid = 40}), views).grid;
+    const Vec3i& n = solid.size();
+    for (int z = 0; z < n.z(); ++z)
+      for (int y = 0; y < n.y(); ++y)
+        for (int x = 0; x < n.x(); ++x) ASSERT_EQ(solid(x, y, z), solid(n.x() - 1 - x, y, z));
+  }
+}
+
+TEST(Consistency, StrokesExplainedByAsManyJumpsElsewhereAreNoGain) {
+  const StrokeScore hull{.drawn = 100, .explained = 20, .unexplained = 10, .uncovered = 0};
+  EXPECT_TRUE((StrokeScore{100, 60, 20, 0}).explains_more_than(hull));
+  EXPECT_FALSE((StrokeScore{100, 60, 25, 0}).explains_more_than(hull));
+  EXPECT_FALSE((StrokeScore{100, 60, 10, 1}).explains_more_than(hull));
+}
+
 TEST(Consistency, ABoxIsTheOnlySolidOfItsDrawings) {
   const ViewSet views = views_of({{4, 5, 6}, {{{0, 0, 0}, {4, 5, 6}}}}, kThreeViews);
   const ConsistencyResult box = apply_consistency(carve_silhouettes(views, {.grid = 24}), views);

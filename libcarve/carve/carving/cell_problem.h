@@ -48,8 +48,8 @@ class CellProblem {
   int cells() const { return static_cast<int>(keep_.size()); }
   std::span<const std::uint8_t> keep() const { return keep_; }
   std::int64_t energy() const { return energy_; }
-  std::int64_t misfit() const { return misfit_; }  // of it, what the drawings ask for: strokes and silhouettes
-  std::int64_t flip(std::span<const int> cells);   // toggles them; the change of energy
+  std::int64_t misfit() const { return misfit_; }       // of it, what the drawings ask for: strokes and silhouettes
+  std::int64_t flip(std::span<const int> cells);        // toggles them; the change of energy
   int mirror(int cell) const { return mirror_[cell]; }  // its mirror image; -1: none, or itself
 
  private:

@@ -105,18 +105,36 @@ ConsistencyResult apply_consistency(const Carving& hull, const ViewSet& views, c
   if (options.seconds)
     in.limit.until = start + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                                  std::chrono::duration<double>(*options.seconds));
-  ConsistencyResult carved = kArms[static_cast<int>(options.arm)](in);
-  carved.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  monitor.at("consistency", 0.9);
+  const auto checked = [&](Consistency arm) {
+    ConsistencyResult carved = kArms[static_cast<int>(arm)](in);
+    if (options.self_check) carved.grid = cover_silhouettes(std::move(carved.grid), hull.grid, names);
+    carved.score = score_strokes(carved.grid, regions);
+    return carved;
+  };
+  const auto fits = [&](const ConsistencyResult& carved) {
+    return !options.self_check || carved.score.explains_more_than(result.hull_score);
+  };
+  ConsistencyResult carved = checked(options.arm);
+  if (!fits(carved) && carved.ran == Consistency::solver) {
+    const ConsistencyResult rejected = std::move(carved);
+    carved = checked(Consistency::two_level);
+    carved.nodes += rejected.nodes;
+    carved.in_time = rejected.in_time;
+  }
+  if (!fits(carved)) {
+    carved.ran = Consistency::none;
+    carved.score = result.hull_score;
+    if (carved.grid != hull.grid) {  // the record is that of another solid
+      carved.grid = hull.grid;
+      carved.solids = 1;
+      carved.all_solids = false;
+      carved.open_cells.clear();
+    }
+  }
   carved.regions = result.regions;
   carved.hull_score = result.hull_score;
-  if (options.self_check) carved.grid = cover_silhouettes(std::move(carved.grid), hull.grid, names);
-  carved.score = score_strokes(carved.grid, regions);
-  if (options.self_check && carved.score.value() <= result.hull_score.value()) {
-    carved.grid = hull.grid;
-    carved.ran = Consistency::none;
-    carved.score = carved.hull_score;
-  }
+  carved.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  monitor.at("consistency", 0.9);
   return carved;
 }
 

@@ -27,6 +27,10 @@ struct StrokeScore {
   double precision() const { return explained + unexplained > 0 ? explained / (explained + unexplained) : 1; }
   /// Larger is better: explained strokes less what is wrong.
   double value() const { return explained - unexplained - 50 * uncovered; }
+  /// It is better, and not at the price of jumps elsewhere: for four strokes it explains at most one side is added.
+  bool explains_more_than(const StrokeScore& other) const {
+    return value() > other.value() && unexplained - other.unexplained <= (explained - other.explained) / 4;
+  }
 };
 std::ostream& operator<<(std::ostream& out, const StrokeScore& score);  // one aligned line a field
 
