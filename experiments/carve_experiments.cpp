@@ -64,8 +64,9 @@ int plan_command(const Arguments& arguments) {
 int run_command(const Arguments& arguments) {
   int failed = 0;
   export_commit();
-  for (const fs::path& path : arguments.specs) {
-    const Spec spec = read_spec(path);
+  std::vector<Spec> specs;  // all are read first: what is wrong with the last one is said at once
+  for (const fs::path& path : arguments.specs) specs.push_back(read_spec(path));
+  for (const Spec& spec : specs) {
     const std::vector<Cell> all = plan(spec);
     const std::vector<Cell> cells = shard_of(all, arguments.shard);
     fs::create_directories(arguments.results / spec.name);

@@ -99,7 +99,7 @@ Layout layout_of(const Data& data, const Overview& overview) {
   std::size_t longest = 1;
   for (const std::string& method : overview.methods) longest = std::max(longest, method.size());
   const std::size_t count = overview.methods.size();
-  layout.key_columns = std::clamp<std::size_t>(layout.width / (9 * longest + 55), 1, count);
+  layout.key_columns = std::clamp<std::size_t>((layout.width - 140) / (9 * longest + 70), 1, count);
   layout.key_height = 10 + 19 * ((count + layout.key_columns - 1) / layout.key_columns);
   if (data.dots) layout.height = 70 + data.x.size() * std::max<std::size_t>(15, 4 * count);
   layout.height += layout.key_height;
@@ -131,7 +131,9 @@ std::string axes_of(const Data& data, const RunMetric& metric) {
   if (data.lines) {
     out << "set xlabel " << quoted(data.x_name) << "\n" << (data.log_x ? "set logscale x 2\n" : "") << "set xtics (";
     for (std::size_t i = 0; i < data.x.size(); ++i) out << (i ? ", " : "") << data.x[i];
-    out << ")\n";
+    const double first = std::stod(data.x.front()), last = std::stod(data.x.back()), room = 0.02 * (last - first);
+    out << ")\nset xrange [" << exact_text(data.log_x ? first / 1.03 : first - room) << ":"
+        << exact_text(data.log_x ? last * 1.03 : last + room) << "]\n";
   } else if (data.dots) {
     out << "set yrange [" << data.x.size() << " - 0.5:-0.5]\nset grid ytics\nset ytics font ',9' (";
     for (std::size_t i = 0; i < data.x.size(); ++i) out << (i ? ", " : "") << quoted(data.x[i]) << " " << i;

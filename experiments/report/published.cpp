@@ -88,6 +88,20 @@ class Measured {
       }
   }
   const Published& published() const { return published_; }
+  // What else the machine was doing: "0.1 to 0.3 on 2 cores".
+  std::string load() const {
+    std::vector<std::string> loads;
+    for (const Record& r : records_)
+      if (const auto found = r.provenance.find("load"); found != r.provenance.end()) loads.push_back(found->second);
+    if (loads.empty()) return "unknown";
+    const auto less = [](const std::string& a, const std::string& b) {
+      return std::atof(a.c_str()) < std::atof(b.c_str());
+    };
+    const auto [low, high] = std::minmax_element(loads.begin(), loads.end(), less);
+    const auto cores = records_.front().provenance.find("cores");
+    return *low + " to " + *high +
+           (cores == records_.front().provenance.end() ? "" : " on " + cores->second + " cores");
+  }
   const std::string& title() const { return title_; }
 
   double operator()(const std::string& row, const std::string& column) const {
@@ -268,8 +282,10 @@ PublishedTable table_4_3(const Rows& rows, const fs::path& results) {
   }
   out.notes.push_back(measured.title().empty()
                           ? "not measured in these results"
-                          : "published: i7-4510U at 2.00 GHz; measured: " + measured.title() +
-                                ", one thread, machine and load in the runs' records; the objects are our stand-ins");
+                          : "published: i7-4510U at 2.00 GHz; measured: " + measured.title() + ", one thread, load " +
+                                measured.load() +
+                                " when the runs began (above one a core times are longer than the work); the objects "
+                                "are our stand-ins");
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <ctime>
 
 #include "carve/core/file.h"
 #include "carve/core/parallel.h"
@@ -94,11 +95,13 @@ void run_cell(const fs::path& results, const std::string& spec, const Cell& cell
 
   Record record = record_of(spec, cell, "done");
   const auto start = std::chrono::steady_clock::now();
+  const std::clock_t cpu_start = std::clock();
   for (const auto& [view, picture] : input.pictures)
     input.drawings.emplace(view, understand_drawing(picture, input.options.pipeline.drawing));
   record_times({{"read", seconds_since(start)}}, record);
   const MethodOutput output = find_method(cell.arm)->run(input);
   record.metrics["seconds"] = seconds_since(start);
+  record.metrics["cpu_seconds"] = static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
   record_times(output.times, record);
 
   record.provenance = provenance();

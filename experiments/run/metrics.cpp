@@ -51,6 +51,8 @@ std::vector<RunMetric> all_metrics() {
       {"disagreement", "largest relative difference of two drawings' extents along a shared axis", "",
        Direction::lower},
       {"seconds", "wall time from pictures to mesh, one thread", "s", Direction::lower},
+      {"cpu_seconds", "processor time from pictures to mesh: what a busy machine does not lengthen much", "s",
+       Direction::lower},
       {"step_volume", "the thesis's step: alignment, silhouette carving, geometric consistency, convex refinement", "s",
        Direction::lower},
       {"step_mesh", "the thesis's step: intersections, marching cubes, smoothing and what works on the mesh", "s",

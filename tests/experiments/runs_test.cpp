@@ -39,7 +39,7 @@ class RunsTest : public testing::Test {
     return texts;
   }
   static bool HasTiming(const std::string& line) {  // rows of runs.csv
-    for (const char* timing : {",seconds", ",step_", ",megabytes"})
+    for (const char* timing : {",seconds", ",cpu_seconds", ",step_", ",megabytes"})
       if (line.find(timing) != std::string::npos) return true;
     return false;
   }
