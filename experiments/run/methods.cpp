@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <memory>
 #include <thread>
 
 namespace carve::experiments {
@@ -24,7 +25,8 @@ MethodOutput hang(const MethodInput&) {
 }
 
 MethodOutput hoard(const MethodInput&) {
-  for (std::vector<std::string> all;;) all.emplace_back(std::size_t{1} << 24, 'x');
+  for (std::vector<std::unique_ptr<char[]>> all;;)
+    all.push_back(std::make_unique_for_overwrite<char[]>(std::size_t{1} << 26));
 }
 
 constexpr Method kMethods[] = {

@@ -73,7 +73,7 @@ TEST_F(RunsTest, AFinishedSweepIsNotDoneAgainAndAnotherGivesTheSameBytes) {
 
 TEST_F(RunsTest, ACrashAHangAndTooMuchMemoryCostTheirCellsOnly) {
   write("s.toml", std::string("models = [\"box\"]\nmetrics = [\"c2m_thesis\"]\n"
-                              "limits = { seconds = 10, megabytes = 2000 }\n") +
+                              "limits = { seconds = 15, megabytes = 2000 }\n") +
                       kQuick +
                       "[[method]]\nname = \"good\"\n[[method]]\nname = \"bad\"\narm = \"crash\"\n"
                       "[[method]]\nname = \"slow\"\narm = \"hang\"\n[[method]]\nname = \"large\"\narm = \"hoard\"\n");
@@ -81,7 +81,7 @@ TEST_F(RunsTest, ACrashAHangAndTooMuchMemoryCostTheirCellsOnly) {
   const std::string text = table("r");
   EXPECT_THAT(text, testing::ContainsRegex("box \\| \\*\\*[0-9.]+\\*\\* \\| – \\| – \\| – \\|"));
   EXPECT_THAT(text, HasSubstr("bad: crashed: "));
-  EXPECT_THAT(text, HasSubstr("slow: stopped after 10 s (box)"));
+  EXPECT_THAT(text, HasSubstr("slow: stopped after 15 s (box)"));
   EXPECT_THAT(text, HasSubstr("large: carve-experiments: not enough memory"));
 }
 
