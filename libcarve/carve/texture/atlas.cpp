@@ -169,23 +169,24 @@ void find_owners(Atlas& atlas, const Clash& clash) {
   }
 }
 
-// Takes the marked triangles out of their charts; those that hang together make new ones. Coordinates stay.
+// Takes the marked triangles out of their charts. What hangs together of them, and of what is left, makes a chart
+// each. Coordinates stay.
 void split_off(const Mesh& mesh, const std::vector<char>& marked, Charts& charts) {
   const auto neighbours = triangle_neighbours(mesh);
   const std::vector<int> before = charts.chart;
-  std::vector<char> done(marked.size());
+  std::ranges::fill(charts.chart, -1);
+  charts.count = 0;
   std::vector<int> open;
   for (int t = 0; t < static_cast<int>(marked.size()); ++t) {
-    if (!marked[t] || done[t]) continue;
+    if (charts.chart[t] >= 0) continue;
     open.assign(1, t);
-    done[t] = 1;
+    charts.chart[t] = charts.count;
     while (!open.empty()) {
       const int here = open.back();
       open.pop_back();
-      charts.chart[here] = charts.count;
       for (const int next : neighbours[here])
-        if (next >= 0 && marked[next] && !done[next] && before[next] == before[here]) {
-          done[next] = 1;
+        if (next >= 0 && charts.chart[next] < 0 && before[next] == before[here] && marked[next] == marked[here]) {
+          charts.chart[next] = charts.count;
           open.push_back(next);
         }
     }

@@ -79,6 +79,7 @@ class Chooser {
     add_seams(problem);
     choice.projection = minimise(problem);
     find_patches(choice);
+    if (absorb_specks(choice)) find_patches(choice);
     return choice;
   }
 
@@ -180,7 +181,39 @@ class Chooser {
       }
   }
 
+  // Patches of a few triangles, as slivers along creases make them, go to the neighbour they share most border with,
+  // if all of them look its way.
+  bool absorb_specks(ViewChoice& choice) const {
+    constexpr double kSpeck = 12;  // mean triangles
+    const double largest = kSpeck * kUnit / per_area_;
+    std::vector<double> area(choice.patches);
+    for (std::size_t t = 0; t < areas_.size(); ++t) area[choice.patch[t]] += areas_[t];
+    std::vector<std::vector<int>> specks(choice.patches);
+    for (int t = 0; t < static_cast<int>(areas_.size()); ++t)
+      if (area[choice.patch[t]] < largest) specks[choice.patch[t]].push_back(t);
+    bool changed = false;
+    for (const std::vector<int>& speck : specks) {
+      std::vector<double> border(choice.projections.size());
+      for (const int t : speck)
+        for (int k = 0; k < 3; ++k)
+          if (const int other = neighbours_[t][k]; other >= 0 && area[choice.patch[other]] >= largest)
+            border[choice.projection[other]] += (corner(t, k) - corner(t, (k + 1) % 3)).norm();
+      const auto looks_its_way = [&](std::size_t p) {
+        return std::ranges::all_of(speck,
+                                   [&](int t) { return along(normals_[t], choice.projections[p].toward) > 0.1; });
+      };
+      for (std::size_t p = 0; p < border.size(); ++p)
+        if (border[p] > 0 && !looks_its_way(p)) border[p] = 0;
+      const auto longest = std::ranges::max_element(border);
+      if (longest == border.end() || *longest == 0) continue;
+      for (const int t : speck) choice.projection[t] = static_cast<int>(longest - border.begin());
+      changed = true;
+    }
+    return changed;
+  }
+
   void find_patches(ViewChoice& choice) const {
+    choice.patches = 0;
     choice.patch.assign(choice.projection.size(), -1);
     std::vector<int> open;
     for (int t = 0; t < static_cast<int>(choice.patch.size()); ++t) {
