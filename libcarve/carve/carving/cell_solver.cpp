@@ -239,15 +239,21 @@ class Search {
 }  // namespace
 
 std::int64_t drop_in_one_pass(CellProblem& problem) {
+  // A cell goes with its mirror image, if that still stands as it does.
+  const auto flip = [&](int c) {
+    const int m = problem.mirror(c);
+    const int both[] = {c, m};
+    return problem.flip(std::span(both, m >= 0 && problem.keep()[m] == problem.keep()[c] ? 2 : 1));
+  };
   std::vector<std::pair<std::int64_t, int>> gains;
   for (int c = 0; c < problem.cells(); ++c) {
-    const std::int64_t change = problem.flip(std::span(&c, 1));
-    problem.flip(std::span(&c, 1));
+    const std::int64_t change = flip(c);
+    flip(c);
     if (change < 0) gains.emplace_back(change, c);
   }
   std::ranges::sort(gains);
   for (const auto& [gain, c] : gains)
-    if (problem.flip(std::span(&c, 1)) >= 0) problem.flip(std::span(&c, 1));
+    if (problem.keep()[c] && flip(c) >= 0) flip(c);
   return problem.cells() + static_cast<std::int64_t>(gains.size());
 }
 
