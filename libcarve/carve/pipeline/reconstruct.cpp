@@ -101,7 +101,8 @@ Reconstruction reconstruct(std::map<View, Drawing> drawings, const PipelineOptio
     return options.intersections_sharp ? sharpen(mesh, result.grid, guides) : mesh;
   });
   Mesh smoothed = stage("smooth", [&] { return smooth(std::move(surface), options.smooth, stage.within(), guides); });
-  RefinedMesh fine = stage("refine", [&] { return refine(std::move(smoothed), options.refine, stage.within()); });
+  RefinedMesh fine =
+      stage("refine", [&] { return refine(std::move(smoothed), options.refine, result.views, stage.within()); });
   result.mesh = std::move(fine.mesh);
   result.refinement = std::move(fine.steps);
   result.topology = stage("check", [&] { return topology(result.mesh); });

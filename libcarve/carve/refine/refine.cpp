@@ -15,15 +15,21 @@ namespace {
 
 struct Stage {
   const char* name;
-  Mesh (*run)(const Mesh&, const RefineOptions&);
+  Mesh (*run)(const Mesh&, const RefineOptions&, const ViewSet&);
 };
 
 template <Mesh (*Run)(const Mesh&, const StageOptions&)>
-Mesh with_stage_options(const Mesh& mesh, const RefineOptions& options) {
+Mesh with_stage_options(const Mesh& mesh, const RefineOptions& options, const ViewSet&) {
   return Run(mesh, options.stages);
 }
 
-Mesh decimate_to_faces(const Mesh& mesh, const RefineOptions& options) { return decimate(mesh, *options.faces); }
+Mesh fit_to_views(const Mesh& mesh, const RefineOptions& options, const ViewSet& views) {
+  return fit(mesh, views, options.fit);
+}
+
+Mesh decimate_to_faces(const Mesh& mesh, const RefineOptions& options, const ViewSet&) {
+  return decimate(mesh, *options.faces);
+}
 
 constexpr Stage kStages[] = {
     {"remesh", with_stage_options<remesh>},
@@ -31,6 +37,7 @@ constexpr Stage kStages[] = {
     {"angle_and_area", with_stage_options<angle_and_area>},
     {"tangential", with_stage_options<tangential>},
     {"segment", with_stage_options<segment>},
+    {"fit", fit_to_views},
     {"decimate", decimate_to_faces},
     {"alpha_wrap", with_stage_options<alpha_wrap>},
 };
@@ -121,7 +128,7 @@ class PutBack {
 };
 
 /// The stages to run; names were checked.
-std::vector<const Stage*> plan(const RefineOptions& options) {
+std::vector<const Stage*> plan(const RefineOptions& options, const ViewSet& views) {
   check("refine", options);
   if (options.faces && *options.faces < 4)
     throw std::invalid_argument("faces must be at least 4, got " + std::to_string(*options.faces));
@@ -137,14 +144,17 @@ std::vector<const Stage*> plan(const RefineOptions& options) {
   const bool named = std::ranges::count(stages, decimate_stage) > 0;
   if (options.faces && !named) stages.push_back(decimate_stage);
   if (named && !options.faces) throw std::invalid_argument("refine.arm names decimate: faces must say how many");
+  if (views.views.empty() && std::ranges::any_of(stages, [](const Stage* s) { return s->run == fit_to_views; }))
+    throw std::invalid_argument("refine.arm names fit: there must be views to fit to");
   return stages;
 }
 
 /// The mesh after the stage, or before it where that cannot be mended.
-Checked run(const Stage& stage, Checked before, const RefineOptions& options, RefinementStep& step) {
+Checked run(const Stage& stage, Checked before, const RefineOptions& options, const ViewSet& views,
+            RefinementStep& step) {
   if (stage.run == with_stage_options<alpha_wrap> && before.meeting.empty() && !options.stages.wrap_always)
     return before;
-  Checked after = checked(stage.run(before.mesh, options));
+  Checked after = checked(stage.run(before.mesh, options, views));
   step.why = what_broke(before, after);
   if (!step.why.empty() && after.mesh.triangles == before.mesh.triangles) {
     PutBack put_back(before, after.mesh.positions.size());
@@ -168,8 +178,8 @@ std::string refinement_names() {
   return all;
 }
 
-RefinedMesh refine(Mesh mesh, const RefineOptions& options, const Monitor& monitor) {
-  const std::vector<const Stage*> stages = plan(options);
+RefinedMesh refine(Mesh mesh, const RefineOptions& options, const ViewSet& views, const Monitor& monitor) {
+  const std::vector<const Stage*> stages = plan(options, views);
   RefinedMesh result;
   if (stages.empty()) {
     result.mesh = std::move(mesh);
@@ -181,7 +191,7 @@ RefinedMesh refine(Mesh mesh, const RefineOptions& options, const Monitor& monit
     monitor.at(stage->name, static_cast<double>(result.steps.size()) / static_cast<double>(stages.size()));
     const auto start = std::chrono::steady_clock::now();
     RefinementStep step{stage->name};
-    now = run(*stage, std::move(now), options, step);
+    now = run(*stage, std::move(now), options, views, step);
     step.triangles = now.topology.triangles;
     step.self_intersections = static_cast<std::int64_t>(now.meeting.size());
     step.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -6,6 +6,7 @@
 
 #include "carve/core/monitor.h"
 #include "carve/mesh/mesh.h"
+#include "carve/refine/fit.h"
 #include "carve/refine/stages.h"
 
 namespace carve {
@@ -14,13 +15,16 @@ struct RefineOptions {
   std::vector<std::string> arm = {};  // names of stages, run in this order
   std::optional<int> faces = {};      // triangles to leave; decimate comes last unless it is named
   StageOptions stages = {};
+  FitOptions fit = {};
 };
 /// `faces` is not among them: the pipeline has it as an option of its own, --faces.
 template <class Visitor>
 void visit_fields(RefineOptions& o, Visitor&& field) {
-  field("arm", o.arm,
-        "stages in their order, of remesh, smooth_shape, angle_and_area, tangential, segment, decimate, alpha_wrap");
+  field(
+      "arm", o.arm,
+      "stages in their order, of remesh, smooth_shape, angle_and_area, tangential, segment, fit, decimate, alpha_wrap");
   visit_fields(o.stages, field);
+  visit_fields(o.fit, field);
 }
 
 std::string refinement_names();  // "remesh, smooth_shape, ..."
@@ -46,6 +50,7 @@ struct RefinedMesh {
 /// as a whole. alpha_wrap, the last resort, runs only where triangles meet, unless stages.wrap_always says so. The same
 /// mesh and options give the same bytes, whatever the thread count. \throws std::invalid_argument: an unknown stage, an
 /// option out of range, a mesh that is not solid
-RefinedMesh refine(Mesh mesh, const RefineOptions& options = {}, const Monitor& monitor = {});
+RefinedMesh refine(Mesh mesh, const RefineOptions& options = {}, const ViewSet& views = {},
+                   const Monitor& monitor = {});
 
 }  // namespace carve
