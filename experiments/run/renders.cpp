@@ -4,6 +4,7 @@
 
 #include "carve/image/read_image.h"
 #include "carve/mesh/mesh_io.h"
+#include "eval/render.h"
 #include "eval/shade.h"
 #include "eval/text.h"
 #include "run/figures.h"
@@ -38,11 +39,16 @@ Picture fitted(const Picture& picture) {
   return small;
 }
 
-Picture render_of(const Mesh& mesh, const CameraAxes& axes) {
-  double extent = 0;
-  const Window unit = window_around(axes, mesh.positions, 1000);
-  extent = std::max(unit.width, unit.height) / 1000.0;
-  return shade(mesh, axes, window_around(axes, mesh.positions, kPanel / std::max(extent, 1e-9)));
+// With its texture if it has one.
+Picture render_of(const TexturedMesh& model, const CameraAxes& axes) {
+  const Window unit = window_around(axes, model.mesh.positions, 1000);
+  const double extent = std::max(unit.width, unit.height) / 1000.0;
+  const Window window = window_around(axes, model.mesh.positions, kPanel / std::max(extent, 1e-9));
+  if (model.texture.empty()) return shade(model.mesh, axes, window);
+  Picture picture = render(model, axes, window, true);
+  for (Rgba& pixel : picture.pixels)
+    if (pixel.a == 0) pixel = {255, 255, 255, 255};
+  return picture;
 }
 
 struct Strip {
@@ -81,9 +87,12 @@ Picture figure_of(const fs::path& results, const std::vector<const Record*>& run
       strips[0].panels.push_back(fitted(read_image(file)));
   if (strips[0].panels.empty()) strips.clear();
   for (const Record* run : runs) {
-    const Mesh mesh = read_mesh(results / run->folder / "mesh.ply");
+    const fs::path folder = results / run->folder;
+    const TexturedMesh model = run->metrics.contains("step_texture")
+                                   ? read_textured_mesh(folder / "mesh.glb")
+                                   : TexturedMesh{read_mesh(folder / "mesh.ply"), {}, {}, {}};
     strips.push_back({run->method, {}});
-    for (const char* camera : kCameras) strips.back().panels.push_back(render_of(mesh, named_camera(camera)));
+    for (const char* camera : kCameras) strips.back().panels.push_back(render_of(model, named_camera(camera)));
   }
   return stacked(strips);
 }
