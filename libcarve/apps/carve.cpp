@@ -194,8 +194,11 @@ int build(Arguments& arguments) {
   if (!arguments.report.empty())
     write_file(arguments.report, [&](std::ostream& out) { out << json_of(arguments, result).dump(2) << '\n'; });
   if (!arguments.quiet) {
-    std::cout << arguments.out.string() << ": " << result.topology.triangles << " triangles, closed, from "
-              << result.grid.count() << " voxels\n";
+    std::cout << arguments.out.string() << ": " << result.topology.triangles << " triangles, closed, from ";
+    if (arguments.options.hull == HullMethod::none)
+      std::cout << result.grid.count() << " voxels\n";
+    else
+      std::cout << "the contours' exact hull\n";
     for (const ViewAgreement& fit : result.agreement)
       if (fit.uncovered || fit.extra)
         std::cout << "  " << name(fit.view) << ": the drawings disagree on " << fit.uncovered + fit.extra

@@ -72,6 +72,18 @@ class CarveProgram : public testing::Test {
   const TemporaryFolder folder_;
 };
 
+TEST_F(CarveProgram, BuildsAnExactHullByEveryMethod) {
+  double volume = 0;
+  for (const char* method : {"strips", "corefinement", "nef"}) {
+    const std::string out = path(std::string("exact_") + method + ".ply");
+    ASSERT_EQ(build(std::string("--contour-tolerance 1 --hull ") + method + " -o " + out).code, 0);
+    const Topology t = topology(read_mesh(out));
+    EXPECT_TRUE(t.solid());
+    EXPECT_NEAR(t.volume, volume == 0 ? t.volume : volume, 1e-12);
+    volume = t.volume;
+  }
+}
+
 TEST_F(CarveProgram, BuildsASolidInEveryFormat) {
   for (const char* name : {"out.glb", "out.obj", "out.ply", "out.stl", "out.off"}) {
     const Outcome outcome = build("-o " + path(name));

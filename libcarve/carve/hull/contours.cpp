@@ -5,6 +5,8 @@
 #include <numeric>
 #include <optional>
 
+#include "carve/core/options.h"
+#include "carve/hull/simplify.h"
 #include "carve/hull/trace.h"
 
 namespace carve {
@@ -62,9 +64,14 @@ Pixels in_lattice(const AlignedView& view, const ViewSet& views, int axis, const
     const Box& box = view.drawing.bounds;
     const int first = columns ? box.x0 : box.y0, last = columns ? box.x1 : box.y1;
     const auto [offset, slope] = pixel_line(view, along);
+    // The outermost borders become the box's: bounds are told to a fraction of a pixel, these pixels' borders are not.
+    const double pixel = std::abs(size[along] / (slope * views.size[along]));
     const auto place = [&, offset = offset, slope = slope](int border) {
-      const double x = ((border - offset) / slope - views.low()[along]) / views.size[along];
-      return static_cast<std::int32_t>(std::clamp<double>(std::round(x * size[along]), 0, size[along]));
+      const double x = size[along] * ((border - offset) / slope - views.low()[along]) / views.size[along];
+      const bool outermost = border == first || border == last;
+      if (outermost && std::abs(x) < 0.9 * pixel) return 0;
+      if (outermost && std::abs(x - size[along]) < 0.9 * pixel) return size[along];
+      return static_cast<int>(std::clamp<double>(std::round(x), 0, size[along]));
     };
     for (int step = 0; step <= last - first; ++step) {
       const int border = slope > 0 ? first + step : last - step;
@@ -115,7 +122,8 @@ Silhouette silhouette(const std::vector<Pixels>& shown, int axis) {
 
 }  // namespace
 
-Silhouettes pixel_contours(const ViewSet& views) {
+Silhouettes pixel_contours(const ViewSet& views, const ContourOptions& options) {
+  check("contour", options);
   Silhouettes all;
   Vec3i size;
   for (int axis = 0; axis < 3; ++axis) size[axis] = lattice_size(views, axis);
@@ -125,7 +133,15 @@ Silhouettes pixel_contours(const ViewSet& views) {
     std::vector<Pixels> shown;
     for (const AlignedView& view : views.views)
       if (frame(view.view).toward.axis == axis) shown.push_back(in_lattice(view, views, axis, size));
-    if (!shown.empty()) all.along.push_back(silhouette(shown, axis));
+    if (shown.empty()) continue;
+    Silhouette one = silhouette(shown, axis);
+    std::array<double, 2> pixel;  // in lattice units
+    for (int k = 0; k < 2; ++k) {
+      const int along = (axis + 1 + k) % 3;
+      pixel[k] = 1 / std::abs(pixel_line(*shown[0].view, along).second * all.unit[along]);
+    }
+    one.loops = hull::simplified(one.loops, options.tolerance, pixel);
+    all.along.push_back(std::move(one));
   }
   return all;
 }

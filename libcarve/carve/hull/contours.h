@@ -6,12 +6,23 @@
 
 namespace carve {
 
+struct ContourOptions {
+  double tolerance = 0;  // pixels
+};
+template <class Visitor>
+void visit_fields(ContourOptions& o, Visitor&& field) {
+  field("tolerance", o.tolerance, 0.0, 100.0,
+        "how far, in pixels, an exact hull's contours may leave the pixels' corners to save vertices; 0: not at all");
+}
+
 /// The borders of the views' pixels that are not background, as polygons on a common lattice.
 ///
 /// Along an axis the lattice has a common multiple of the views' pixels where 2^16 allows, so pixel borders are exact;
 /// else they are rounded to the nearest of 2^16. Either way the object's box is [0, n] in every view, so extents agree
-/// exactly. Opposite views become one silhouette, what both show. Pixels that only meet in a corner are parted: both
-/// corners are cut off by one lattice unit (a quarter of a pixel or less).
-Silhouettes pixel_contours(const ViewSet& views);
+/// exactly: the outermost pixels end with it. Opposite views become one silhouette, what both show. Pixels that only
+/// meet in a corner are parted: both corners are cut off by one lattice unit (a quarter of a pixel or less). With a
+/// tolerance vertices are left out (hull/simplify.h): at one pixel and above the staircases of slanted lines vanish.
+/// \throws std::invalid_argument on an option out of range
+Silhouettes pixel_contours(const ViewSet& views, const ContourOptions& options = {});
 
 }  // namespace carve

@@ -36,11 +36,18 @@ class Linker {
       : points_(points), planes_(planes), sides_(std::move(sides)) {}
 
   Sides run() {
-    if (std::vector<int> loose = match(); !loose.empty()) {
+    std::vector<int> loose = match();
+    if (has_seams()) {  // what touches there may end elsewhere
+      loose.resize(sides_.size());
+      std::iota(loose.begin(), loose.end(), 0);
+    }
+    if (!loose.empty()) {
       split_where_others_end(loose);
       for (FacetSide& side : sides_) side.partner = -1, side.touching = false;
       if (!match().empty()) throw std::logic_error("the facets of a hull do not close");
     }
+    for (FacetSide& side : sides_)
+      if (FacetSide& other = sides_[side.partner]; side.plane == other.plane) side.plane = other.plane = -1;
     link_corners();
     drop_straight_points();
     return compacted();
@@ -69,6 +76,12 @@ class Linker {
   }
 
   std::vector<int> match();
+  bool has_seams() const {
+    return std::any_of(sides_.begin(), sides_.end(), [&](const FacetSide& side) {
+      return side.partner >= 0 && side.plane == sides_[side.partner].plane &&
+             side.source == sides_[side.partner].source;
+    });
+  }
   bool match_line(const std::vector<int>& forward, const std::vector<int>& backward);
   void pair_around(const std::vector<int>& forward, const std::vector<int>& backward);
   void split_where_others_end(const std::vector<int>& loose);
@@ -117,8 +130,6 @@ bool Linker::match_line(const std::vector<int>& forward, const std::vector<int>&
     sides_[forward[0]].partner = backward[0];
     sides_[backward[0]].partner = forward[0];
   }
-  for (const int side : forward)
-    if (const int other = sides_[side].partner; sides_[side].plane == sides_[other].plane) drop(side), drop(other);
   return true;
 }
 

@@ -143,25 +143,33 @@ class Vertices {
   std::vector<int> points_;  // of a vertex
 };
 
-// Copies of a point are drawn back into their own part of the solid by this much, of 1: hundreds of units in the last
-// place, so that parts which only touch do not meet after rounding, and far below everything that is measured.
+// Copies of a point are drawn apart, each along its own edges (into the solid in the middle of a
+// line), by this much of 1: hundreds of units in the last place,
+// so that parts which only touch do not meet after rounding, and far below everything that is measured.
 constexpr double kParting = 0x1p-44;
 
 std::vector<Vec3> positions(const ExactHull& hull, const Vertices& vertices, const Silhouettes& silhouettes,
                             int& split_points) {
   std::vector<int> copies(hull.points.size());
   for (int v = 0; v < vertices.count(); ++v) split_points += copies[vertices.point(v)]++ > 0;
-  std::vector<Vec3> all(vertices.count());
-  for (int v = 0; v < vertices.count(); ++v)
+  const auto at = [&](int point) {
+    Vec3 position;
     for (int axis = 0; axis < 3; ++axis)
-      all[v][axis] =
-          silhouettes.origin[axis] + silhouettes.unit[axis] * hull.points[vertices.point(v)].coordinate(axis);
+      position[axis] = silhouettes.origin[axis] + silhouettes.unit[axis] * hull.points[point].coordinate(axis);
+    return position;
+  };
+  std::vector<Vec3> all(vertices.count());
+  for (int v = 0; v < vertices.count(); ++v) all[v] = at(vertices.point(v));
   if (split_points == 0) return all;
-  for (int i = 0; i < static_cast<int>(hull.sides.size()); ++i)
-    if (copies[hull.sides[i].from] > 1) {
-      const auto& n = hull.planes[hull.sides[i].plane].normal;
-      all[vertices.of(i)] -= kParting * Vec3(n[0], n[1], n[2]).normalized();
-    }
+  std::vector<Vec3> along(all.size(), Vec3::Zero()), inwards(all.size(), Vec3::Zero());
+  for (int i = 0; i < static_cast<int>(hull.sides.size()); ++i) {
+    const auto& n = hull.planes[hull.sides[i].plane].normal;
+    along[vertices.of(i)] += (at(hull.sides[i].to) - at(hull.sides[i].from)).normalized();
+    inwards[vertices.of(i)] -= Vec3(n[0], n[1], n[2]).normalized();
+  }
+  for (int v = 0; v < vertices.count(); ++v)
+    if (copies[vertices.point(v)] > 1)  // in the middle of a line, its two edges lead nowhere
+      all[v] += kParting * (along[v].norm() > 1e-6 ? along[v] : inwards[v]);
   return all;
 }
 

@@ -41,6 +41,30 @@ class Stages {
   std::vector<StageTime>& times_;
 };
 
+Mesh voxel_surface(const Carving& hull, Reconstruction& result, const PipelineOptions& options, Stages& stage) {
+  result.consistency =
+      stage("consistency", [&] { return apply_consistency(hull, result.views, options.consistency, stage.within()); });
+  Refinement refined = stage("convex", [&] {
+    return refine_convex(std::exchange(result.consistency.grid, {}), result.views, options.convex);
+  });
+  result.grid = std::move(refined.grid);
+  if (result.grid.count() == 0) throw NoResult("geometric consistency left no voxel");
+  const Crossings crossings = stage("intersections", [&] {
+    if (!options.intersections) return Crossings{};
+    Crossings crossings = contour_crossings(result.views, result.grid);
+    crossings.edges = std::move(refined.crossings);
+    return crossings;
+  });
+  Guides guides;
+  Mesh surface = stage("surface", [&] {
+    Mesh mesh = marching_cubes(result.grid, crossings);
+    if (!options.intersections) return mesh;
+    if (options.intersections_sharp || options.smooth.keep) guides = vertex_guides(mesh, result.grid, crossings);
+    return options.intersections_sharp ? sharpen(mesh, result.grid, guides) : mesh;
+  });
+  return stage("smooth", [&] { return smooth(std::move(surface), options.smooth, stage.within(), guides); });
+}
+
 }  // namespace
 
 std::vector<Field> fields(PipelineOptions& options) {
@@ -49,6 +73,7 @@ std::vector<Field> fields(PipelineOptions& options) {
   add_fields(all, "", options);
   add_fields(all, "consistency", options.consistency);
   add_fields(all, "convex", options.convex);
+  add_fields(all, "contour", options.contour);
   add_fields(all, "drawing", options.drawing);
   add_fields(all, "align", options.align);
   add_fields(all, "smooth", options.smooth);
@@ -79,30 +104,13 @@ Reconstruction reconstruct(std::map<View, Drawing> drawings, const PipelineOptio
   Reconstruction result;
   Stages stage(monitor, 10, result.times);
   result.views = stage("align", [&] { return align(std::move(drawings), options.align); });
-  const Carving hull = stage("carve", [&] { return carve_silhouettes(result.views, options.carve); });
-  result.consistency =
-      stage("consistency", [&] { return apply_consistency(hull, result.views, options.consistency, stage.within()); });
-  Refinement refined = stage("convex", [&] {
-    return refine_convex(std::exchange(result.consistency.grid, {}), result.views, options.convex);
+  Carving hull = stage("carve", [&] { return carve_silhouettes(result.views, options.carve); });
+  Mesh surface = options.hull == HullMethod::none ? voxel_surface(hull, result, options, stage) : stage("hull", [&] {
+    return polyhedral_hull(pixel_contours(result.views, options.contour), options.hull).mesh;
   });
-  result.grid = std::move(refined.grid);
-  if (result.grid.count() == 0) throw NoResult("geometric consistency left no voxel");
-  const Crossings crossings = stage("intersections", [&] {
-    if (!options.intersections) return Crossings{};
-    Crossings crossings = contour_crossings(result.views, result.grid);
-    crossings.edges = std::move(refined.crossings);
-    return crossings;
-  });
-  Guides guides;
-  Mesh surface = stage("surface", [&] {
-    Mesh mesh = marching_cubes(result.grid, crossings);
-    if (!options.intersections) return mesh;
-    if (options.intersections_sharp || options.smooth.keep) guides = vertex_guides(mesh, result.grid, crossings);
-    return options.intersections_sharp ? sharpen(mesh, result.grid, guides) : mesh;
-  });
-  Mesh smoothed = stage("smooth", [&] { return smooth(std::move(surface), options.smooth, stage.within(), guides); });
+  if (options.hull != HullMethod::none) result.grid = std::move(hull.grid);
   RefinedMesh fine =
-      stage("refine", [&] { return refine(std::move(smoothed), options.refine, result.views, stage.within()); });
+      stage("refine", [&] { return refine(std::move(surface), options.refine, result.views, stage.within()); });
   result.mesh = std::move(fine.mesh);
   result.refinement = std::move(fine.steps);
   result.topology = stage("check", [&] { return topology(result.mesh); });

@@ -10,6 +10,8 @@
 #include "carve/carving/geometric_consistency.h"
 #include "carve/core/monitor.h"
 #include "carve/core/options.h"
+#include "carve/hull/contours.h"
+#include "carve/hull/polyhedral_hull.h"
 #include "carve/image/read_image.h"
 #include "carve/mesh/topology.h"
 #include "carve/refine/refine.h"
@@ -23,6 +25,8 @@ struct PipelineOptions {
   CarveOptions carve;
   bool intersections = true;
   bool intersections_sharp = true;
+  HullMethod hull = HullMethod::none;
+  ContourOptions contour;
   ConsistencyOptions consistency;
   ConvexOptions convex;
   DrawingOptions drawing;
@@ -38,6 +42,7 @@ void visit_fields(PipelineOptions& o, Visitor&& field) {
   field("intersections", o.intersections, "vertices at the exact crossing of grid line and drawn contour");
   field("intersections_sharp", o.intersections_sharp,
         "with intersections: edges and corners at their place instead of cut off");
+  field("hull", o.hull, "an exact polyhedral hull of the contours in place of voxels; it is not smoothed");
   field("faces", o.refine.faces, 4, 1e9, "triangles to leave, by edge collapse; auto: all");
 }
 
@@ -52,7 +57,7 @@ struct StageTime {
 
 struct Reconstruction {
   Mesh mesh;       // solid (mesh/topology.h), object units: longest side 1, centred on x and z, standing on y = 0
-  VoxelGrid grid;  // the solid the mesh was made from
+  VoxelGrid grid;  // the solid the mesh was made from; of an exact hull, its voxels
   ConsistencyResult consistency;  // its grid is empty: it became `grid`
   std::vector<RefinementStep> refinement;
   Topology topology;
@@ -66,7 +71,8 @@ struct Reconstruction {
 std::map<View, Drawing> read_drawings(const std::map<View, std::filesystem::path>& paths,
                                       const DrawingOptions& options = {});
 
-/// The whole way: align, carve, consistency, convex, surface, smooth, refine, texture.
+/// The whole way: align, carve, consistency, convex, surface, smooth, refine, texture. With a hull method: align, carve
+/// (to tell where the drawings disagree), hull, refine, texture.
 /// \throws std::invalid_argument on options or views that cannot work; NoResult if nothing is left
 Reconstruction reconstruct(std::map<View, Drawing> drawings, const PipelineOptions& options = {},
                            const Monitor& monitor = {});
