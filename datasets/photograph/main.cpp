@@ -25,7 +25,7 @@ struct Arguments {
   RigOptions rig;
   PoseNoiseOptions pose_noise;
   PhotographOptions photograph;
-  TextureOptions texture;
+  SolidTextureOptions texture;
 };
 
 std::vector<Field> fields(Arguments& arguments) {
@@ -33,7 +33,7 @@ std::vector<Field> fields(Arguments& arguments) {
   add_fields(all, "rig", arguments.rig);
   add_fields(all, "pose_noise", arguments.pose_noise);
   add_fields(all, "photograph", arguments.photograph);
-  add_fields(all, "texture", arguments.texture);
+  add_fields(all, "solid_texture", arguments.texture);
   return all;
 }
 

@@ -48,7 +48,7 @@ Vec3 texel(const Picture& texture, const Vec2& uv) {
 
 class Studio {
  public:
-  Studio(const Model& model, const PhotographOptions& options, const TextureOptions& texture)
+  Studio(const Model& model, const PhotographOptions& options, const SolidTextureOptions& texture)
       : model_(model),
         options_(options),
         texture_(texture),
@@ -151,7 +151,7 @@ class Studio {
 
   const Model& model_;
   const PhotographOptions& options_;
-  const TextureOptions& texture_;
+  const SolidTextureOptions& texture_;
   RayScene scene_;
   Vec3 background_, low_, high_;
   double side_ = 1;
@@ -160,9 +160,9 @@ class Studio {
 }  // namespace
 
 std::vector<Photo> photograph(const Model& model, std::span<const Camera> cameras, const PhotographOptions& options,
-                              const TextureOptions& texture, const Monitor& monitor) {
+                              const SolidTextureOptions& texture, const Monitor& monitor) {
   check("photograph", options);
-  check("texture", texture);
+  check("solid_texture", texture);
   if (model.mesh.triangles.empty()) throw std::invalid_argument("a model without triangles cannot be photographed");
   const Studio studio(model, options, texture);
   std::vector<Photo> photos;

@@ -6,7 +6,7 @@
 #include "carve/core/monitor.h"
 #include "carve/photo/camera.h"
 #include "models/model.h"
-#include "photograph/texture.h"
+#include "photograph/solid_texture.h"
 
 namespace carve {
 
@@ -39,7 +39,7 @@ void visit_fields(PhotographOptions& o, Visitor&& field) {
 /// in sRGB values; normals are the triangles' own, so faceted models look faceted. The same input gives the same bytes.
 /// \throws std::invalid_argument on an option out of range, or a model without triangles
 std::vector<Photo> photograph(const Model& model, std::span<const Camera> cameras,
-                              const PhotographOptions& options = {}, const TextureOptions& texture = {},
+                              const PhotographOptions& options = {}, const SolidTextureOptions& texture = {},
                               const Monitor& monitor = {});
 
 }  // namespace carve

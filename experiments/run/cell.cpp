@@ -16,7 +16,9 @@
 #include "models/inside.h"
 #include "run/hash.h"
 #include "run/methods.h"
+#include "run/metrics.h"
 #include "run/models.h"
+#include "run/photo_methods.h"
 #include "run/provenance.h"
 #include "run/reference.h"
 #include "run/runner.h"
@@ -31,15 +33,25 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void measure_against(const Model& model, const Mesh& reference, const Mesh& mesh, const CompareOptions& options,
-                     Record& record) {
+// The points that a mesh was made from: how near they are and what of the reference they cover.
+void measure_points(const std::vector<Vec3>& points, const Reference& reference, Record& record) {
+  record.metrics["points"] = static_cast<double>(points.size());
+  const Comparison comparison = reference.compare({.positions = points, .triangles = {}});
+  for (const Score& score : scores(comparison, reference))
+    if (const auto value = score.percent ? score.percent : score.value)
+      if (const std::string name = "points_" + score.name(); find_metric(name)) record.metrics[name] = *value;
+}
+
+void measure_against(const Model& model, const Mesh& reference, const MethodOutput& output,
+                     const CompareOptions& options, Record& record) {
   const Reference prepared(reference, options);
-  for (const Score& score : scores(prepared.compare(mesh), prepared)) {
+  for (const Score& score : scores(prepared.compare(output.mesh), prepared)) {
     const auto value = score.percent ? score.percent : score.value;
     if (value) record.metrics[score.name()] = *value;
   }
   const VoxelGrid grid = grid_of(model, kOccupancyGrid);
-  record.metrics["iou"] = intersection_over_union(occupancy(model, grid), occupancy({.mesh = mesh}, grid));
+  record.metrics["iou"] = intersection_over_union(occupancy(model, grid), occupancy({.mesh = output.mesh}, grid));
+  if (!output.points.empty()) measure_points(output.points, prepared, record);
 }
 
 void measure_shadows(const Mesh& mesh, const MethodInput& input, Record& record) {
@@ -93,13 +105,19 @@ void run_cell(const fs::path& results, const std::string& spec, const Cell& cell
   input.options.degrade.seed = static_cast<int>(cell.seed);
   if (subject.model) input.pictures = synthesize(*subject.model, input.options.synthesize, input.options.degrade);
 
+  const Method& method = *find_method(cell.arm);
+  if (method.photos) {
+    if (!subject.model) throw std::invalid_argument(cell.model + " has no base model to take photos of");
+    input.photos = take_photos(*subject.model, input.options);
+  }
+
   Record record = record_of(spec, cell, "done");
   const auto start = std::chrono::steady_clock::now();
   const std::clock_t cpu_start = std::clock();
   for (const auto& [view, picture] : input.pictures)
     input.drawings.emplace(view, understand_drawing(picture, input.options.pipeline.drawing));
   record_times({{"read", seconds_since(start)}}, record);
-  const MethodOutput output = find_method(cell.arm)->run(input);
+  const MethodOutput output = method.run(input);
   record.metrics["seconds"] = seconds_since(start);
   record.metrics["cpu_seconds"] = static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
   record_times(output.times, record);
@@ -108,7 +126,7 @@ void run_cell(const fs::path& results, const std::string& spec, const Cell& cell
   if (subject.model) {
     const std::string content = content_hash(subject);
     record.provenance[kReferenceKey] = content;
-    measure_against(*subject.model, reference_of(results, *subject.model, content), output.mesh, input.options.evaluate,
+    measure_against(*subject.model, reference_of(results, *subject.model, content), output, input.options.evaluate,
                     record);
   }
   measure_shadows(output.mesh, input, record);

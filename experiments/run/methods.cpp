@@ -5,6 +5,8 @@
 #include <memory>
 #include <thread>
 
+#include "run/photo_methods.h"
+
 namespace carve::experiments {
 namespace {
 
@@ -31,6 +33,10 @@ MethodOutput hoard(const MethodInput&) {
 
 constexpr Method kMethods[] = {
     {"carve", "the pipeline of carve build", carve_arm},
+    {"silhouettes", "the visual hull of photos", silhouettes_arm, true},
+    {"space_carving", "Space Carving from that hull", space_carving_arm, true},
+    {"drawings_and_photos", "Space Carving from what the pipeline carved", drawings_and_photos_arm, true},
+    {"stereo", "dense stereo of photos, fusion, Poisson", stereo_arm, true},
     {"crash", "dies of a segmentation fault: to see that a sweep survives it", crash},
     {"hang", "never ends: to see the time limit at work", hang},
     {"hoard", "takes memory until there is none: to see the memory limit at work", hoard},

@@ -10,6 +10,12 @@ std::vector<Field> fields(RunOptions& options) {
   add_fields(all, "synthesize", options.synthesize);
   add_fields(all, "degrade", options.degrade);
   add_fields(all, "evaluate", options.evaluate);
+  add_fields(all, "rig", options.rig);
+  add_fields(all, "pose_noise", options.pose_noise);
+  add_fields(all, "photograph", options.photograph);
+  add_fields(all, "solid_texture", options.solid_texture);
+  add_fields(all, "space_carving", options.space_carving);
+  add_fields(all, "stereo", options.stereo);
   return all;
 }
 

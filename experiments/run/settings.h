@@ -1,18 +1,29 @@
 #pragma once
 #include "carve/core/options.h"
+#include "carve/photo/rig.h"
+#include "carve/photo/space_carving.h"
+#include "carve/photo/stereo.h"
 #include "carve/pipeline/reconstruct.h"
 #include "eval/compare.h"
+#include "photograph/photograph.h"
 #include "run/spec.h"
 #include "synthesize/synthesize.h"
 
 namespace carve::experiments {
 
-/// Every option that a spec may set: the pipeline's as in carve build, "synthesize.*", "degrade.*" and "evaluate.*".
+/// Every option that a spec may set: the pipeline's as in carve build, "synthesize.*", "degrade.*", "evaluate.*" and
+/// those of photos.
 struct RunOptions {
   PipelineOptions pipeline;
   SynthesizeOptions synthesize;
   DegradeOptions degrade;  // its seed is the run's
   CompareOptions evaluate;
+  RigOptions rig;  // of photos: where from, with what error, of what
+  PoseNoiseOptions pose_noise;
+  PhotographOptions photograph;
+  SolidTextureOptions solid_texture;
+  SpaceCarvingOptions space_carving;
+  StereoOptions stereo;
 };
 
 std::vector<Field> fields(RunOptions& options);

@@ -68,7 +68,7 @@ TEST(Photograph, StylesDifferInWhatTwoPhotosAgreeOn) {
 }
 
 TEST(Photograph, TextureTellsPlacesApart) {
-  const TextureOptions options;
+  const SolidTextureOptions options;
   double near = 0, far = 0;
   for (int i = 0; i < 500; ++i) {
     const Vec3 p(0.001 * i, 0.3 + 0.0007 * i, -0.0003 * i);

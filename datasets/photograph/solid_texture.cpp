@@ -1,4 +1,4 @@
-#include "photograph/texture.h"
+#include "photograph/solid_texture.h"
 
 #include <algorithm>
 #include <cmath>
@@ -39,7 +39,7 @@ Vec3 value_noise(const Vec3& p, std::uint64_t key) {
 
 }  // namespace
 
-Vec3 noise_colour(const Vec3& place, double side, const TextureOptions& options) {
+Vec3 noise_colour(const Vec3& place, double side, const SolidTextureOptions& options) {
   constexpr double kContrast = 2.2;  // value noise keeps near 0, and sums of it nearer
   Vec3 sum = Vec3::Zero();
   double size = options.grain / 100 * side;

@@ -1,0 +1,89 @@
+#include "run/photo_methods.h"
+
+#include <chrono>
+
+#include "carve/core/error.h"
+#include "carve/photo/poisson.h"
+#include "carve/photo/silhouette_hull.h"
+#include "carve/surface/marching_cubes.h"
+
+namespace carve::experiments {
+namespace {
+
+constexpr double kPadding = 3;  // % of the longest side that the box is larger than the object
+
+// Does a stage and notes its time.
+template <class Work>
+auto timed(MethodOutput& output, const char* stage, Work&& work) {
+  const auto start = std::chrono::steady_clock::now();
+  auto result = work();
+  output.times.push_back({stage, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
+  return result;
+}
+
+VoxelGrid region(const MethodInput& input) {
+  return grid_over(input.photos.low, input.photos.high, input.options.pipeline.carve.grid, Fill::full);
+}
+
+void mesh_grid(MethodOutput& output, const VoxelGrid& grid, const MethodInput& input) {
+  if (grid.count() == 0) throw NoResult("no voxel is consistent with the photos");
+  const Mesh rough = timed(output, "surface", [&] { return marching_cubes(grid); });
+  output.mesh = timed(output, "smooth", [&] { return smooth(rough, input.options.pipeline.smooth); });
+}
+
+VoxelGrid hull_of(MethodOutput& output, const VoxelGrid& start, const MethodInput& input) {
+  return timed(output, "silhouettes", [&] { return silhouette_hull(input.photos.photos, start); });
+}
+
+VoxelGrid carved(MethodOutput& output, const VoxelGrid& start, const MethodInput& input) {
+  return timed(output, "space_carving",
+               [&] { return space_carving(input.photos.photos, start, input.options.space_carving); })
+      .grid;
+}
+
+}  // namespace
+
+PhotoInput take_photos(const Model& model, const RunOptions& options) {
+  const auto [low, high] = bounds(model.mesh);
+  const std::vector<Camera> cameras = rig(low, high, options.rig);
+  const Vec3 padding = Vec3::Constant(kPadding / 100 * (high - low).maxCoeff());
+  PhotoInput input{photograph(model, cameras, options.photograph, options.solid_texture), low - padding,
+                   high + padding};
+  const std::vector<Camera> told = with_pose_noise(cameras, (low + high) / 2, options.pose_noise);
+  for (std::size_t i = 0; i < told.size(); ++i) input.photos[i].camera = told[i];
+  return input;
+}
+
+MethodOutput silhouettes_arm(const MethodInput& input) {
+  MethodOutput output;
+  mesh_grid(output, hull_of(output, region(input), input), input);
+  return output;
+}
+
+MethodOutput space_carving_arm(const MethodInput& input) {
+  MethodOutput output;
+  const VoxelGrid hull = hull_of(output, region(input), input);
+  mesh_grid(output, carved(output, hull, input), input);
+  return output;
+}
+
+MethodOutput drawings_and_photos_arm(const MethodInput& input) {
+  Reconstruction drawn = reconstruct(input.drawings, input.options.pipeline);
+  MethodOutput output{.times = std::move(drawn.times)};
+  const VoxelGrid hull = hull_of(output, drawn.grid, input);
+  mesh_grid(output, carved(output, hull, input), input);
+  return output;
+}
+
+MethodOutput stereo_arm(const MethodInput& input) {
+  MethodOutput output;
+  const auto& [photos, low, high] = input.photos;
+  const StereoOptions& options = input.options.stereo;
+  const std::vector<DepthMap> maps = timed(output, "stereo", [&] { return depth_maps(photos, low, high, options); });
+  const OrientedPoints points = timed(output, "fusion", [&] { return fuse(maps, low, high, options); });
+  output.mesh = timed(output, "poisson", [&] { return poisson_surface(points, region(input)); });
+  output.points = points.positions;
+  return output;
+}
+
+}  // namespace carve::experiments
