@@ -7,179 +7,20 @@
 #include <limits>
 #include <mutex>
 
-#include "carve/carving/part_contours.h"
-#include "carve/carving/sections.h"
+#include "carve/carving/contour_field.h"
 #include "carve/core/options.h"
 #include "carve/core/parallel.h"
 
 namespace carve {
 namespace {
 
-constexpr std::uint8_t kAllCorners = 15;
-constexpr double kFilled = 0.95;         // share of its contour that a section fills, if its box is what bounds it
-constexpr std::size_t kFewestGrown = 3;  // slices of a part whose outlines have a direction
-constexpr double kFilledGrown = 0.7;     // the same in a solid that looks grown
-constexpr double kConvex = 0.97;     // share of its convex hull that a convex section fills, for its voxels' corners
 constexpr float kTolerance = 1e-4f;  // a mirrored solid gives the mirrored result
 constexpr float kClearance = 0.02f;  // voxels between a crossing and the centres
-
-float power(float base, int exponent) {
-  float result = 1;
-  for (; exponent; exponent >>= 1, base *= base)
-    if (exponent & 1) result *= base;
-  return result;
-}
-
-/// |distance from the middle / half the way to the ends| ^ exponent, of a voxel's centre.
-float way_out(int index, float low, float high, int exponent) {
-  return power(std::abs((2 * index + 1 - low - high) / (high - low)), exponent);
-}
-
-/// Of voxels that are added row by row, the rows upwards.
-class ConvexHull {
- public:
-  /// Voxels u0 <= u < u1 of row v.
-  void add(int v, int u0, int u1) {
-    for (const int corner : {v, v + 1}) {
-      extend(low_, {corner, u0}, 1);
-      extend(high_, {corner, u1}, -1);
-    }
-  }
-  double area() const { return under(high_) - under(low_); }
-
- private:
-  struct Corner {
-    int v, u;
-  };
-  static int turn(const Corner& a, const Corner& b, const Corner& c) {
-    return (b.v - a.v) * (c.u - a.u) - (b.u - a.u) * (c.v - a.v);
-  }
-  static void extend(std::vector<Corner>& chain, const Corner& next, int side) {
-    if (!chain.empty() && chain.back().v == next.v) {
-      if (side * (next.u - chain.back().u) >= 0) return;
-      chain.pop_back();
-    }
-    while (chain.size() > 1 && side * turn(chain[chain.size() - 2], chain.back(), next) <= 0) chain.pop_back();
-    chain.push_back(next);
-  }
-  static double under(const std::vector<Corner>& chain) {
-    double area = 0;
-    for (std::size_t i = 1; i < chain.size(); ++i)
-      area += (chain[i].v - chain[i - 1].v) * (chain[i].u + chain[i - 1].u) / 2.0;
-    return area;
-  }
-  std::vector<Corner> low_, high_;
-};
-
-/// How far out in its sections' contours a voxel lies: below 1 inside, above 1 outside, 0 where none is rounded.
-class ContourField {
- public:
-  ContourField(const VoxelGrid& solid, const ViewSet& views, const ConvexOptions& options) : size_(solid.size()) {
-    for (int axis = 0; axis < 3; ++axis) cuts_[axis] = cut(solid, axis, views);
-    std::array<std::vector<Drift>, 3> ways;
-    for (int axis = 0; axis < 3; ++axis) ways[axis] = drifts(cuts_[axis], size_.maxCoeff());
-    const bool all = grown(cuts_, ways) >= options.grown;
-    for (int axis = 0; axis < 3; ++axis) {
-      const std::vector<int> exponents = part_exponents(cuts_[axis], size_.maxCoeff(), options);
-      for (std::size_t s = 0; s < ways[axis].size(); ++s) {
-        const int part = cuts_[axis].sections[s].part, exponent = exponents[part];
-        const bool by_corners = all && exponent == kRectangle && cuts_[axis].parts[part].size() >= kFewestGrown;
-        exponents_[axis].push_back(by_corners ? kEllipse : exponent);
-        corners_[axis].push_back(by_corners ? drifting_corners(ways[axis][s]) : kAllCorners);
-      }
-      keep_unfilled(axis, all ? kFilledGrown : kFilled, all ? 0 : kConvex);
-      rounds_[axis] = std::ranges::any_of(exponents_[axis], [](int e) { return e != kRectangle; });
-    }
-  }
-  bool rounds() const { return rounds_[0] || rounds_[1] || rounds_[2]; }
-
-  /// The values of layer z: field[y * nx + x].
-  void layer(int z, std::vector<float>& field) const {
-    const int nx = size_.x(), ny = size_.y();
-    field.assign(static_cast<std::size_t>(nx) * ny, 0);
-    for (int x = 0; rounds_[0] && x < nx; ++x) row(0, x, z, &field[x], nx);
-    for (int y = 0; rounds_[1] && y < ny; ++y) row(1, y, z, &field[static_cast<std::size_t>(y) * nx], 1);
-    for (int y = 0; rounds_[2] && y < ny; ++y) row(2, z, y, &field[static_cast<std::size_t>(y) * nx], 1);
-  }
-
- private:
-  /// Calls use(section, exponent, u, value) for the voxels of row v of a slice that lie in rounded sections.
-  template <class Use>
-  void each_value(int axis, int slice, int v, Use&& use) const {
-    const Sections& all = cuts_[axis];
-    const int at = slice * all.height + v;
-    for (int r = all.first_run[at]; r < all.first_run[at + 1]; ++r) {
-      const SectionRun& run = all.runs[r];
-      const int exponent = exponents_[axis][run.section];
-      if (exponent == kRectangle) continue;
-      const std::array<float, 4>& ends = all.sections[run.section].ends;
-      const float across = way_out(v, ends[2], ends[3], exponent);
-      for (int u = run.u0; u < run.u1; ++u) use(run.section, u, across + way_out(u, ends[0], ends[1], exponent));
-    }
-  }
-
-  /// Sections that are not convex, or miss a good part of the contour's inside, are not what their boxes say: they stay
-  /// as they are.
-  void keep_unfilled(int axis, double filled, double convex) {
-    const Sections& all = cuts_[axis];
-    parallel_ranges(0, all.slices, 4, [&](int first, int last) {
-      for (int slice = first; slice < last; ++slice) {
-        const int begin = all.first_section[slice], end = all.first_section[slice + 1];
-        std::vector<ConvexHull> hulls(end - begin);
-        std::vector<int> inside(end - begin, 0);
-        for (int v = 0; v < all.height; ++v) {
-          const int at = slice * all.height + v;
-          for (int r = all.first_run[at]; r < all.first_run[at + 1]; ++r)
-            if (exponents_[axis][all.runs[r].section] != kRectangle)
-              hulls[all.runs[r].section - begin].add(v, all.runs[r].u0, all.runs[r].u1);
-          each_value(axis, slice, v, [&](int section, int, float value) { inside[section - begin] += value <= 1; });
-        }
-        for (int s = begin; s < end; ++s) {
-          int& exponent = exponents_[axis][s];
-          if (exponent == kRectangle) continue;
-          const Section& section = all.sections[s];
-          const double contour = section.width() * section.height() * superellipse_fill(exponent);
-          if (inside[s - begin] < filled * contour || section.area < convex * hulls[s - begin].area())
-            exponent = kRectangle;
-        }
-      }
-    });
-  }
-
-  /// A bit for each corner that lies between two ends which drift.
-  static std::uint8_t drifting_corners(const Drift& drift) {
-    constexpr float kDrifts = 0.06f;  // voxels a slice
-    std::uint8_t corners = 0;
-    for (const int c : {0, 1, 2, 3}) {
-      const auto [u, v] = at_corner(drift, c);
-      corners |= (std::min(u, v) > kDrifts) << c;
-    }
-    return corners;
-  }
-
-  /// Row v of a slice; voxel u's value is field[u * step].
-  void row(int axis, int slice, int v, float* field, int step) const {
-    each_value(axis, slice, v, [&](int section, int u, float value) {
-      const std::array<float, 4>& ends = cuts_[axis].sections[section].ends;
-      const int corner = (2 * u + 1 > ends[0] + ends[1]) + 2 * (2 * v + 1 > ends[2] + ends[3]);
-      if (!(corners_[axis][section] >> corner & 1)) return;
-      float& largest = field[static_cast<std::size_t>(u) * step];
-      largest = std::max(largest, value);
-    });
-  }
-
-  Vec3i size_;
-  std::array<Sections, 3> cuts_;
-  std::array<std::vector<int>, 3> exponents_;         // of each section
-  std::array<std::vector<std::uint8_t>, 3> corners_;  // of each section, a bit for each corner that is rounded
-  std::array<bool, 3> rounds_{};
-};
 
 /// The least value on the rays of each view: voxels up to it stay, so that every shadow does.
 class RayMinima {
  public:
   explicit RayMinima(const Vec3i& size) : size_(size) {
-    constexpr float kNone = std::numeric_limits<float>::max();
     xy_.assign(static_cast<std::size_t>(size.x()) * size.y(), kNone);
     zy_.assign(static_cast<std::size_t>(size.z()) * size.y(), kNone);
     xz_.assign(static_cast<std::size_t>(size.x()) * size.z(), kNone);
@@ -199,6 +40,9 @@ class RayMinima {
       const std::lock_guard lock(mutex);
       for (std::size_t i = 0; i < xy.size(); ++i) xy_[i] = std::min(xy_[i], xy[i]);
     });
+    soften(xy_, size_.x(), field.soften());
+    soften(zy_, size_.z(), field.soften());
+    soften(xz_, size_.x(), field.soften());
   }
 
   /// Up to where voxels stay on the rays through (x, y, z).
@@ -218,7 +62,43 @@ class RayMinima {
   }
 
  private:
-  std::size_t index(int z, int y) const { return static_cast<std::size_t>(z) * size_.y() + y; }
+  std::size_t index(int z, int y) const { return static_cast<std::size_t>(y) * size_.z() + z; }
+
+  /// Raises values to those around them, so that what a single ray has to keep does not stand out as a needle: the
+  /// largest within `reach`, averaged.
+  static void soften(std::vector<float>& values, int width, int reach) {
+    if (reach == 0) return;
+    std::vector<float> around(values.size()), mean(values.size());
+    window<true>(values, around, width, reach, 1);
+    window<true>(around, mean, width, reach, width);
+    window<false>(mean, around, width, reach, 1);
+    window<false>(around, mean, width, reach, width);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (values[i] != kNone) values[i] = std::max(values[i], mean[i]);
+  }
+
+  /// The largest or the mean of the values up to `reach` away along a row (step 1) or a column (step = width). What
+  /// lies inside its contours counts as 1, what no voxel has not at all.
+  template <bool largest>
+  static void window(const std::vector<float>& from, std::vector<float>& to, int width, int reach, int step) {
+    const int height = static_cast<int>(from.size() / width);
+    parallel_ranges(0, height, 16, [&](int first, int last) {
+      for (int y = first; y < last; ++y)
+        for (int x = 0; x < width; ++x) {
+          const int at = y * width + x, place = step == 1 ? x : y, end = step == 1 ? width : height;
+          float most = 1, sum = 0;
+          int count = 0;
+          for (int k = std::max(-reach, -place); k <= std::min(reach, end - 1 - place); ++k) {
+            const float value = from[at + k * step];
+            if (value == kNone) continue;
+            most = std::max(most, value), sum += std::max(1.f, value), ++count;
+          }
+          to[at] = largest ? most : count ? sum / static_cast<float>(count) : 1;
+        }
+    });
+  }
+
+  static constexpr float kNone = std::numeric_limits<float>::max();
   Vec3i size_;
   std::vector<float> xy_, zy_, xz_;
 };

@@ -36,10 +36,10 @@ struct Refinement {
 /// sections of `solid` that are not convex stay. Slices across all three axes are intersected.
 ///
 /// A solid whose outlines hardly ever stand upright, like an animal's, looks grown: there every section is filled by an
-/// ellipse, in the corners between two outlines that drift.
+/// ellipse, in the corners between two outlines that drift, as far as the sections around it are.
 ///
 /// The result lies inside `solid` and casts the same shadow in every view: on each ray the voxels deepest inside their
-/// sections' contours stay.
+/// sections' contours stay; in a solid that looks grown, those around them that are as deep, too.
 ///
 /// Arm off: `solid` itself. \param views  drawings that `solid` was carved from \throws std::invalid_argument on an
 /// option out of range
