@@ -67,6 +67,7 @@ std::vector<RunMetric> all_metrics() {
       {"seconds_intersections", "marching intersections", "s", Direction::lower},
       {"seconds_surface", "marching cubes", "s", Direction::lower},
       {"seconds_smooth", "smoothing", "s", Direction::lower},
+      {"seconds_hull", "exact polyhedral hull", "s", Direction::lower},
       {"seconds_refine", "remeshing, smoothing of the shape, decimation", "s", Direction::lower},
       {"seconds_texture", "atlas and diffuse map", "s", Direction::lower},
       {"charts", "charts of the texture atlas", "", Direction::lower},
