@@ -66,7 +66,9 @@ int main(int argc, char** argv) {
   add_fields(options, "", arguments.options);
   add_flags(app, options);
   app.footer(
-      "Example:\n  cloud_to_mesh a.ply b.obj --reference truth.ply --tolerances 0.5,1 --csv scores.csv\n"
+      "Examples:\n  cloud_to_mesh a.ply b.obj --reference truth.ply --tolerances 0.5,1 --csv scores.csv\n"
+      "  cloud_to_mesh hull.ply voxels.ply smooth.ply --reference truth.ply --split\n"
+      "    (carve build --hull strips; --consistency none --convex off --smooth-steps 0; the same smoothed)\n"
       "Exit codes: 0 done, 1 the work could not be done, 2 wrong usage or bad input.");
   return run_program(app, argc, argv, [&] { return compare(arguments); });
 }
