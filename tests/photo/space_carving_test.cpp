@@ -68,7 +68,7 @@ TEST(SpaceCarving, ATexturedBallConvergesToItsPhotoHull) {
   double before = 1;
   for (const int grid : {32, 64, 96}) {
     const VoxelGrid hull = silhouette_hull(photos, region(kStriped, grid));
-    const SpaceCarving carved = space_carving(photos, hull);
+    const SpaceCarving carved = space_carving(photos, hull, {.margin = 0});
     EXPECT_TRUE(carved.converged);
     EXPECT_TRUE(contains(hull, carved.grid));
     EXPECT_EQ(hull.count() - carved.grid.count(), carved.carved);

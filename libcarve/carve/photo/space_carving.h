@@ -9,7 +9,7 @@ namespace carve {
 
 struct SpaceCarvingOptions {
   double threshold = 10;  // of 255
-  double margin = 0;      // voxels
+  double margin = 0.5;    // voxels
   double visible = 0.5;
   double outliers = 0.1;
   int rounds = 50;
