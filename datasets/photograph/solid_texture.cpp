@@ -4,16 +4,10 @@
 #include <cmath>
 #include <cstdint>
 
+#include "models/mixed.h"
+
 namespace carve {
 namespace {
-
-// splitmix64's finaliser: a number for every lattice point, whoever asks first.
-std::uint64_t mixed(std::uint64_t x) {
-  x += 0x9e3779b97f4a7c15u;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
-}
 
 // Three channels in [-1, 1] from one number.
 Vec3 lattice(std::int64_t x, std::int64_t y, std::int64_t z, std::uint64_t key) {

@@ -7,17 +7,11 @@
 
 #include "carve/image/read_image.h"
 #include "carve/image/write_jpeg.h"
+#include "models/mixed.h"
 
 namespace carve {
 namespace {
 
-// A counter-based generator (splitmix64's finaliser): any number at any place, whoever asks first.
-std::uint64_t mixed(std::uint64_t x) {
-  x += 0x9e3779b97f4a7c15u;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
-}
 std::uint64_t random_bits(const DegradeOptions& options, View view, int purpose, std::uint64_t place) {
   return mixed(mixed(mixed(static_cast<std::uint64_t>(options.seed)) + static_cast<std::uint64_t>(view) * 16 +
                      static_cast<std::uint64_t>(purpose)) +
