@@ -4,6 +4,7 @@
 #include "apps/command_line.h"
 #include "carve/image/read_image.h"
 #include "carve/mesh/mesh_io.h"
+#include "carve/views/read_drawings.h"
 #include "eval/about.h"
 #include "eval/silhouette.h"
 
@@ -21,18 +22,9 @@ struct Arguments {
   bool json = false;
 };
 
-Drawing read_drawing(const fs::path& path, const DrawingOptions& options) try {
-  return understand_drawing(read_image(path), options);
-} catch (const NoResult& error) {
-  throw IoError(path.string(), error.what());
-}
-
 int check_silhouettes(const Arguments& arguments) {
   const Mesh mesh = read_mesh(arguments.mesh);
-  std::map<View, Drawing> drawings;
-  for (const auto& [view, path] : arguments.drawings)
-    if (!path.empty()) drawings[view] = read_drawing(path, arguments.drawing);
-  const ViewSet views = align(std::move(drawings), arguments.align);
+  const ViewSet views = align(read_drawings(arguments.drawings, arguments.drawing), arguments.align);
   const SilhouetteScores scores =
       about(arguments.mesh, [&] { return silhouette_scores(mesh, views, arguments.options); });
 
@@ -73,5 +65,8 @@ int main(int argc, char** argv) {
   app.footer(
       "Example:\n  silhouette_check model.glb --front f.png --side s.png --top t.png --least-iou 0.98\n"
       "Exit codes: 0 pass, 1 the work could not be done, 2 wrong usage or bad input, 3 a view's IoU is too low.");
-  return run_program(app, argc, argv, [&] { return check_silhouettes(arguments); });
+  return run_program(app, argc, argv, [&] {
+    std::erase_if(arguments.drawings, [](const auto& entry) { return entry.second.empty(); });
+    return check_silhouettes(arguments);
+  });
 }

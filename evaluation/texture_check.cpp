@@ -4,6 +4,7 @@
 #include "apps/command_line.h"
 #include "carve/image/read_image.h"
 #include "carve/mesh/mesh_io.h"
+#include "carve/views/read_drawings.h"
 #include "eval/about.h"
 #include "eval/texture_scores.h"
 #include "eval/texture_sheet.h"
@@ -22,18 +23,10 @@ struct Arguments {
   bool json = false;
 };
 
-Drawing read_drawing(const fs::path& path, const DrawingOptions& options) try {
-  return understand_drawing(read_image(path), options);
-} catch (const NoResult& error) {
-  throw IoError(path.string(), error.what());
-}
-
 int check_texture(const Arguments& arguments) {
   const TexturedMesh model = read_textured_mesh(arguments.model);
   const AtlasScores atlas = atlas_scores(model);
-  std::map<View, Drawing> drawings;
-  for (const auto& [view, path] : arguments.drawings)
-    if (!path.empty()) drawings[view] = read_drawing(path, arguments.drawing);
+  std::map<View, Drawing> drawings = read_drawings(arguments.drawings, arguments.drawing);
   std::optional<RoundTrip> trip;
   if (!drawings.empty())
     trip = about(arguments.model, [&] { return round_trip(model, align(std::move(drawings), arguments.align)); });
@@ -78,5 +71,8 @@ int main(int argc, char** argv) {
   app.footer(
       "Example:\n  texture_check model.glb --front f.png --side s.png --top t.png --sheet model.png\n"
       "Exit codes: 0 done, 1 the work could not be done, 2 wrong usage or bad input.");
-  return run_program(app, argc, argv, [&] { return check_texture(arguments); });
+  return run_program(app, argc, argv, [&] {
+    std::erase_if(arguments.drawings, [](const auto& entry) { return entry.second.empty(); });
+    return check_texture(arguments);
+  });
 }

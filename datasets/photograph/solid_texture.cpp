@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "models/mixed.h"
+#include "carve/core/random.h"
 
 namespace carve {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <utility>
 
+#include "carve/core/random.h"
 #include "carve/image/read_image.h"
 #include "carve/image/write_jpeg.h"
-#include "models/mixed.h"
 
 namespace carve {
 namespace {
@@ -17,7 +17,6 @@ std::uint64_t random_bits(const DegradeOptions& options, View view, int purpose,
                      static_cast<std::uint64_t>(purpose)) +
                place);
 }
-double unit(std::uint64_t bits) { return static_cast<double>(bits >> 11) * 0x1p-53; }
 
 enum Purpose { kShift, kScale, kWaverX, kWaverY, kRub, kNoise };
 

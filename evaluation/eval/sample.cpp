@@ -8,20 +8,14 @@
 #include <string>
 
 #include "carve/core/parallel.h"
+#include "carve/core/random.h"
 
 namespace carve {
 namespace {
 
-// The n-th number of the stream `seed`, uniform in [0, 1): splitmix64's mixing of a counter, so that any thread can
-// make any sample.
+// The n-th number of the stream `seed`, uniform in [0, 1): of a counter, so that any thread can make any sample.
 double uniform(std::uint64_t seed, std::uint64_t n) {
-  std::uint64_t z = (seed + 1) * 0x9e3779b97f4a7c15u + n * 0xd1342543de82ef95u;
-  for (int round = 0; round < 2; ++round) {
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    z ^= z >> 31;
-  }
-  return static_cast<double>(z >> 11) * 0x1p-53;
+  return unit(spread(spread((seed + 1) * kGolden + n * 0xd1342543de82ef95u)));
 }
 
 }  // namespace

@@ -6,20 +6,13 @@
 #include <stdexcept>
 #include <vector>
 
+#include "carve/core/embed.h"
 #define STB_TRUETYPE_IMPLEMENTATION
 #define STBTT_STATIC
 #pragma GCC diagnostic ignored "-Wunused-function"
 #include <stb/stb_truetype.h>
 
-// The font file itself, between two symbols.
-__asm__(
-    ".section .rodata\n"
-    ".balign 16\n"
-    "carve_font_begin: .incbin \"" CARVE_FONT
-    "\"\n"
-    ".byte 0\n"
-    ".previous\n");
-extern "C" const unsigned char carve_font_begin[];
+CARVE_EMBED(unsigned char, carve_font, CARVE_FONT);
 
 namespace carve {
 namespace {
@@ -27,7 +20,7 @@ namespace {
 const stbtt_fontinfo& font() {
   static const stbtt_fontinfo info = [] {
     stbtt_fontinfo loaded;
-    if (!stbtt_InitFont(&loaded, carve_font_begin, 0)) throw std::runtime_error("the built-in font cannot be read");
+    if (!stbtt_InitFont(&loaded, carve_font, 0)) throw std::runtime_error("the built-in font cannot be read");
     return loaded;
   }();
   return info;

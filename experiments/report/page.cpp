@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "carve/core/embed.h"
 #include "carve/core/error.h"
 #include "carve/core/file.h"
 #include "carve/image/read_image.h"
@@ -13,14 +14,7 @@
 #include "report/table.h"
 #include "report/viewer.h"
 
-// The page's style, between two symbols.
-__asm__(
-    ".section .rodata\n"
-    "carve_style_begin: .incbin \"" CARVE_STYLE
-    "\"\n"
-    ".byte 0\n"
-    ".previous\n");
-extern "C" const char carve_style_begin[];
+CARVE_EMBED(char, carve_style, CARVE_STYLE);
 
 namespace carve::experiments {
 namespace fs = std::filesystem;
@@ -118,7 +112,7 @@ std::string html_report(const fs::path& results, const ReportOptions& options) {
   out << "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
          "content=\"width=device-width, initial-scale=1\"><title>Carve: results</title><link rel=\"icon\" "
          "href=\"data:,\"><style>"
-      << carve_style_begin << "</style></head><body>\n<h1>Carve: results</h1>\n<nav><ul>";
+      << carve_style << "</style></head><body>\n<h1>Carve: results</h1>\n<nav><ul>";
   std::vector<std::pair<std::string, Results>> specs;
   for (const std::string& name : specs_in(results)) specs.emplace_back(name, load_results(results / name));
   const std::vector<PublishedTable> published = published_tables(options.published, results);

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "carve/core/embed.h"
 #include "carve/core/error.h"
 #include "carve/core/file.h"
 #include "carve/core/parallel.h"
@@ -12,14 +13,7 @@
 #include "report/display_mesh.h"
 #include "report/table.h"
 
-// The page's own script, between two symbols.
-__asm__(
-    ".section .rodata\n"
-    "carve_viewer_begin: .incbin \"" CARVE_VIEWER
-    "\"\n"
-    ".byte 0\n"
-    ".previous\n");
-extern "C" const char carve_viewer_begin[];
+CARVE_EMBED(char, carve_viewer, CARVE_VIEWER);
 
 namespace carve::experiments {
 namespace fs = std::filesystem;
@@ -149,7 +143,7 @@ std::string viewer_html(const fs::path& results, const fs::path& three, double m
   for (const std::string& mesh : meshes.pack(megabytes))
     out << "<script type=\"text/plain\" class=\"mesh\">" << mesh << "</script>\n";
   out << "<script type=\"application/json\" id=\"view-runs\">" << without_end_tags(specs.dump()) << "</script>\n"
-      << "<script>" << library << "</script>\n<script>" << controls << "</script>\n<script>" << carve_viewer_begin
+      << "<script>" << library << "</script>\n<script>" << controls << "</script>\n<script>" << carve_viewer
       << "</script>\n</section>\n";
   return out.str();
 }

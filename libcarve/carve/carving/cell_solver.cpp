@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "carve/core/random.h"
+
 namespace carve {
 namespace {
 
@@ -39,22 +41,6 @@ Order order_of(const Cells& cells, const Vec3i& size, std::span<const RegionMap>
   }
   return out;
 }
-
-/// splitmix64: the same numbers everywhere.
-class Random {
- public:
-  std::uint64_t operator()() {
-    std::uint64_t z = state_ += 0x9e3779b97f4a7c15ULL;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-    return z ^ (z >> 31);
-  }
-  std::size_t below(std::size_t n) { return (*this)() % n; }
-  double unit() { return ((*this)() >> 11) * 0x1p-53; }
-
- private:
-  std::uint64_t state_ = 1;
-};
 
 class Search {
  public:

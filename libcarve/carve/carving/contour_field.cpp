@@ -9,11 +9,11 @@ namespace {
 
 constexpr std::uint8_t kAllCorners = 15;
 constexpr double kFilled = 0.95;         // share of its contour that a section fills, if its box is what bounds it
+constexpr double kFilledGrown = 0.7;     // the same in a solid that looks grown
 constexpr std::size_t kFewestGrown = 3;  // slices of a part whose outlines have a direction
 constexpr double kBlend = 0.12;          // of the longest side: how far apart sections that look grown are alike
 constexpr double kSoften = 0.04;         // of the longest side: how far apart the ends of what is kept are alike
 constexpr int kFarthest = 16;            // voxels, of both: work stays in bounds
-constexpr double kFilledGrown = 0.7;     // the same in a solid that looks grown
 constexpr double kConvex = 0.97;  // share of its convex hull that a convex section fills, for its voxels' corners
 
 float power(float base, int exponent) {
@@ -86,14 +86,15 @@ ContourField::ContourField(const VoxelGrid& solid, const ViewSet& views, const C
   soften_ = all ? voxels(kSoften) : 0;
   for (int axis = 0; axis < 3; ++axis) {
     const std::vector<int> exponents = part_exponents(cuts_[axis], size_.maxCoeff(), options);
+    std::vector<std::uint8_t> corners;  // of each section, a bit for each corner that is rounded
     for (std::size_t s = 0; s < ways[axis].size(); ++s) {
       const int part = cuts_[axis].sections[s].part, exponent = exponents[part];
       const bool by_corners = all && exponent == kRectangle && cuts_[axis].parts[part].size() >= kFewestGrown;
       exponents_[axis].push_back(by_corners ? kEllipse : exponent);
-      corners_[axis].push_back(by_corners ? drifting_corners(ways[axis][s]) : kAllCorners);
+      corners.push_back(by_corners ? drifting_corners(ways[axis][s]) : kAllCorners);
     }
     keep_unfilled(axis, all ? kFilledGrown : kFilled, all ? 0 : kConvex);
-    weigh_corners(axis, all ? voxels(kBlend) : 0);
+    weigh_corners(axis, corners, all ? voxels(kBlend) : 0);
     rounds_[axis] = std::ranges::any_of(exponents_[axis], [](int e) { return e != kRectangle; });
   }
 }
@@ -155,10 +156,10 @@ int ContourField::voxels(double share) const {
 
 /// How much each section's corners are rounded: the share of the sections up to `reach` slices away whose corner is,
 /// since slices that are decided one by one would stand out as fins.
-void ContourField::weigh_corners(int axis, int reach) {
+void ContourField::weigh_corners(int axis, const std::vector<std::uint8_t>& corners, int reach) {
   const std::vector<Section>& sections = cuts_[axis].sections;
   const auto rounded = [&](int s, int corner) {
-    return exponents_[axis][s] != kRectangle && (corners_[axis][s] >> corner & 1);
+    return exponents_[axis][s] != kRectangle && (corners[s] >> corner & 1);
   };
   std::vector<std::array<float, 4>>& weights = weights_[axis];
   weights.resize(sections.size());

@@ -25,13 +25,12 @@ class ContourField {
   void each_value(int axis, int slice, int v, Use&& use) const;
   void keep_unfilled(int axis, double filled, double convex);
   int voxels(double share) const;
-  void weigh_corners(int axis, int reach);
+  void weigh_corners(int axis, const std::vector<std::uint8_t>& corners, int reach);
   void row(int axis, int slice, int v, float* field, int step) const;
 
   Vec3i size_;
   std::array<Sections, 3> cuts_;
   std::array<std::vector<int>, 3> exponents_;                 // of each section
-  std::array<std::vector<std::uint8_t>, 3> corners_;          // of each section, a bit for each corner that is rounded
   std::array<std::vector<std::array<float, 4>>, 3> weights_;  // of each section's corners, 1 = rounded
   std::array<bool, 3> rounds_{};
   int soften_ = 0;

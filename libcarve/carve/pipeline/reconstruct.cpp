@@ -83,20 +83,6 @@ std::vector<Field> fields(PipelineOptions& options) {
   return all;
 }
 
-std::map<View, Drawing> read_drawings(const std::map<View, std::filesystem::path>& paths,
-                                      const DrawingOptions& options) {
-  std::map<View, Drawing> drawings;
-  for (const auto& [view, path] : paths) {
-    Picture picture = read_image(path);
-    try {
-      drawings.emplace(view, understand_drawing(std::move(picture), options));
-    } catch (const NoResult& nothing) {
-      throw IoError(path.string(), nothing.what());
-    }
-  }
-  return drawings;
-}
-
 Reconstruction reconstruct(std::map<View, Drawing> drawings, const PipelineOptions& options, const Monitor& monitor) {
   PipelineOptions checked = options;
   for (const Field& field : fields(checked)) field.set(field.get());

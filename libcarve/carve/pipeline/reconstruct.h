@@ -1,5 +1,4 @@
 #pragma once
-#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
@@ -12,11 +11,11 @@
 #include "carve/core/options.h"
 #include "carve/hull/contours.h"
 #include "carve/hull/polyhedral_hull.h"
-#include "carve/image/read_image.h"
 #include "carve/mesh/topology.h"
 #include "carve/refine/refine.h"
 #include "carve/surface/smooth.h"
 #include "carve/texture/texture.h"
+#include "carve/views/read_drawings.h"
 
 namespace carve {
 
@@ -66,10 +65,6 @@ struct Reconstruction {
   std::vector<ViewAgreement> agreement;
   std::vector<StageTime> times;
 };
-
-/// \throws IoError naming the file: unreadable, not an image, nothing but background or nothing but object
-std::map<View, Drawing> read_drawings(const std::map<View, std::filesystem::path>& paths,
-                                      const DrawingOptions& options = {});
 
 /// The whole way: align, carve, consistency, convex, surface, smooth, refine, texture. With a hull method: align, carve
 /// (to tell where the drawings disagree), hull, refine, texture.
