@@ -153,6 +153,7 @@ class Search {
   void try_levels(const std::vector<int>& column) {
     const std::int64_t energy = problem_.energy();
     std::vector<std::uint8_t> before;
+    before.reserve(column.size());
     for (const int c : column) before.push_back(problem_.keep()[c]);
     for (const int c : column)
       if (!problem_.keep()[c]) flip(c);

@@ -208,6 +208,7 @@ std::vector<CellContact> contacts(const Cells& cells, const Vec3i& size) {
       if (z > 0) overlaps(runs, row(y, z), row(y, z - 1), across);
     }
   std::vector<CellContact> out;
+  out.reserve(faces.size());
   for (const auto& [pair, n] : faces)
     out.push_back({static_cast<int>(pair >> 32), static_cast<int>(pair & 0xffffffff), n});
   for (int c = 0; c < cells.count; ++c)

@@ -46,8 +46,8 @@ int NearestSet::operator()(int x, int y, double limit) const {
 double NearestSet::distance(int x, int y, double limit) const {
   const int nearest = (*this)(x, y, limit);
   if (nearest < 0) return std::numeric_limits<double>::infinity();
-  const double dx = nearest % width_ - x, dy = nearest / width_ - y;
-  return std::sqrt(dx * dx + dy * dy);
+  const int dx = nearest % width_ - x, dy = nearest / width_ - y;
+  return std::sqrt(static_cast<double>(dx) * dx + static_cast<double>(dy) * dy);
 }
 
 Raster<std::uint16_t> squared_distances(const Mask& mask, int limit) {

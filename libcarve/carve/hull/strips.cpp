@@ -121,7 +121,7 @@ void Strips::add_slab(int polygon, int axis, int slot, const ContourEdge& f) {
   if (index_[axis].empty()) return;
   const int mine = 1 - slot;  // f's coordinate
   const std::int64_t from = f.from[mine], step = f.to[mine] - from, sign = step > 0 ? 1 : -1;
-  const auto [low, high] = std::minmax(f.from[mine], f.to[mine]);
+  const std::int32_t low = std::min(f.from[mine], f.to[mine]), high = std::max(f.from[mine], f.to[mine]);
   const auto place = [&](std::int64_t x) { return Fraction{sign * (x - from), sign * step}; };
   index_[axis][slot].find(low, high, [&](int i) {
     const ContourEdge& g = edges_[i];

@@ -215,6 +215,12 @@ class Builder {
     return middle - range.items.begin();
   }
 
+  /// Leaves that so many triangles fill: what it costs to enter their box.
+  static float leaves(std::size_t triangles) {
+    const std::size_t count = (triangles + Bvh::kWidth - 1) / Bvh::kWidth;
+    return static_cast<float>(count);
+  }
+
   static std::size_t split_few(const Range& range) {
     float low, high;
     const int axis = longest_axis(range.items, low, high);
@@ -226,14 +232,14 @@ class Builder {
     Box3 box;
     for (std::size_t i = count; i-- > 1;) {
       box.add(range.items[i].box);
-      right[i] = box.area() * static_cast<float>((count - i + 7) / 8);
+      right[i] = box.area() * leaves(count - i);
     }
     box = {};
     std::size_t best = 0;
     float best_cost = std::numeric_limits<float>::infinity();
     for (std::size_t i = 1; i < count; ++i) {
       box.add(range.items[i - 1].box);
-      const float cost = box.area() * static_cast<float>((i + 7) / 8) + right[i];
+      const float cost = box.area() * leaves(i) + right[i];
       if (cost < best_cost) best_cost = cost, best = i;
     }
     return best ? best : count / 2;

@@ -18,7 +18,7 @@ constexpr double kTooLong = 1.5;   // times the chord that a circle of the objec
 struct Crossing {
   int x, y;
   bool along_row;
-  auto operator<=>(const Crossing&) const = default;
+  auto operator<=>(const Crossing&) const = default;  // NOLINT(modernize-use-nullptr): clang-tidy 14 sees its zero
 };
 
 /// The next crossing along the outline, the object to the left as pictures are seen (y down).

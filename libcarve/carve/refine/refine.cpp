@@ -154,7 +154,16 @@ Checked run(const Stage& stage, Checked before, const RefineOptions& options, co
             RefinementStep& step) {
   if (stage.run == with_stage_options<alpha_wrap> && before.meeting.empty() && !options.stages.wrap_always)
     return before;
-  Checked after = checked(stage.run(before.mesh, options, views));
+  Checked after;
+  try {
+    after = checked(stage.run(before.mesh, options, views));
+  } catch (const std::invalid_argument&) {
+    throw;
+  } catch (const std::logic_error&) {  // CGAL's own checks, where a build has them
+    step.why = "it met a shape that it cannot work on";
+    step.kept = false;
+    return before;
+  }
   step.why = what_broke(before, after);
   if (!step.why.empty() && after.mesh.triangles == before.mesh.triangles) {
     PutBack put_back(before, after.mesh.positions.size());

@@ -19,12 +19,12 @@ namespace {
 // edges that end in its upper corner. Along a row of cells, vertices are numbered as the scan passes them: each of the
 // eight kinds of edges that end at cx has a counter, and the edges that end at cx - 1 are the ones counted last.
 
-constexpr int kCounters = 8;                                               // edges ending at cx:
-constexpr int kCounted[kCounters] = {0, 1, 2, 3, 5, 7, 9, 11};             // along x; y; z (surface/cube_table.h)
-constexpr int kPassed[4] = {4, 6, 8, 10};                                  // those at cx - 1: y, z
-constexpr int kOwnedX = 3, kOwnedY = 7, kOwnedZ = 11;                      // edges
-constexpr int kCornerX = 6, kCornerY = 5, kCornerZ = 3, kUpperCorner = 7;  // where they come from, and end
-constexpr int kMostWords = kLargestGrid / 64 + 1;                          // of a row of cells
+constexpr int kCounters = 8;                                    // edges ending at cx:
+constexpr int kCounted[kCounters] = {0, 1, 2, 3, 5, 7, 9, 11};  // along x; y; z (surface/cube_table.h)
+constexpr int kPassed[4] = {4, 6, 8, 10};                       // those at cx - 1: y, z
+constexpr int kOwnedX = 3, kOwnedY = 7, kOwnedZ = 11;           // edges
+constexpr int kUpperCorner = 7;                                 // where they end
+constexpr int kMostWords = kLargestGrid / 64 + 1;               // of a row of cells
 
 using Counters = std::array<int, kCounters>;
 

@@ -27,6 +27,7 @@ std::vector<Projection> all_projections(const ViewSet& views, Mirror mirror) {
       return t.axis == toward.axis && t.sign == toward.sign;
     });
   };
+  all.reserve(2 * views.views.size());
   for (int i = 0; i < static_cast<int>(views.views.size()); ++i) all.push_back({i, frame(views.views[i].view).toward});
   for (int i = 0; i < static_cast<int>(views.views.size()) && mirror != Mirror::no; ++i) {
     const SignedAxis toward = frame(views.views[i].view).toward, across{toward.axis, -toward.sign};
