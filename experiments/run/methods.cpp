@@ -37,6 +37,7 @@ constexpr Method kMethods[] = {
     {"space_carving", "Space Carving from that hull", space_carving_arm, true},
     {"drawings_and_photos", "Space Carving from what the pipeline carved", drawings_and_photos_arm, true},
     {"stereo", "dense stereo of photos, fusion, Poisson", stereo_arm, true},
+    {"patches", "multi-view stereo by patches as PMVS does it, Poisson", patches_arm, true},
     {"crash", "dies of a segmentation fault: to see that a sweep survives it", crash},
     {"hang", "never ends: to see the time limit at work", hang},
     {"hoard", "takes memory until there is none: to see the memory limit at work", hoard},

@@ -86,4 +86,14 @@ MethodOutput stereo_arm(const MethodInput& input) {
   return output;
 }
 
+MethodOutput patches_arm(const MethodInput& input) {
+  MethodOutput output;
+  const auto& [photos, low, high] = input.photos;
+  const OrientedPoints points =
+      timed(output, "patches", [&] { return patches(photos, low, high, input.options.patches); });
+  output.mesh = timed(output, "poisson", [&] { return poisson_surface(points, region(input)); });
+  output.points = points.positions;
+  return output;
+}
+
 }  // namespace carve::experiments

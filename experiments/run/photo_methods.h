@@ -15,6 +15,8 @@ MethodOutput space_carving_arm(const MethodInput& input);
 MethodOutput drawings_and_photos_arm(const MethodInput& input);
 /// Dense stereo, fusion, Poisson.
 MethodOutput stereo_arm(const MethodInput& input);
+/// Patches as PMVS makes them, Poisson.
+MethodOutput patches_arm(const MethodInput& input);
 
 /// The photos that a run's options ask for, with the cameras as calibration has them, and the box.
 PhotoInput take_photos(const Model& model, const RunOptions& options);

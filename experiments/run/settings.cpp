@@ -16,6 +16,7 @@ std::vector<Field> fields(RunOptions& options) {
   add_fields(all, "solid_texture", options.solid_texture);
   add_fields(all, "space_carving", options.space_carving);
   add_fields(all, "stereo", options.stereo);
+  add_fields(all, "patches", options.patches);
   return all;
 }
 

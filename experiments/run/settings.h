@@ -1,5 +1,6 @@
 #pragma once
 #include "carve/core/options.h"
+#include "carve/photo/patches.h"
 #include "carve/photo/rig.h"
 #include "carve/photo/space_carving.h"
 #include "carve/photo/stereo.h"
@@ -24,6 +25,7 @@ struct RunOptions {
   SolidTextureOptions solid_texture;
   SpaceCarvingOptions space_carving;
   StereoOptions stereo;
+  PatchOptions patches;
 };
 
 std::vector<Field> fields(RunOptions& options);
