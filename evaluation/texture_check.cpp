@@ -15,7 +15,7 @@ using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 struct Arguments {
-  fs::path model, sheet;
+  fs::path model, sheet, differences;
   std::map<View, fs::path> drawings;
   DrawingOptions drawing;
   AlignOptions align;
@@ -28,17 +28,24 @@ int check_texture(const Arguments& arguments) {
   const AtlasScores atlas = atlas_scores(model);
   std::map<View, Drawing> drawings = read_drawings(arguments.drawings, arguments.drawing);
   std::optional<RoundTrip> trip;
-  if (!drawings.empty())
-    trip = about(arguments.model, [&] { return round_trip(model, align(std::move(drawings), arguments.align)); });
+  if (!drawings.empty()) {
+    const ViewSet views = align(std::move(drawings), arguments.align);
+    trip = about(arguments.model, [&] { return round_trip(model, views); });
+    if (!arguments.differences.empty()) write_png(arguments.differences, differences(model, views));
+  } else if (!arguments.differences.empty()) {
+    throw std::invalid_argument("--differences needs the drawings: --front, --side, --top");
+  }
   if (!arguments.sheet.empty()) write_png(arguments.sheet, texture_sheet(model, arguments.size));
+  const int result = atlas.flipped + atlas.overlap + atlas.outside > 0 ? kCheckFailed : kDone;
   if (!arguments.json) {
     std::cout << arguments.model.string() << "\n" << atlas;
     if (trip) std::cout << *trip;
-    return kDone;
+    return result;
   }
-  Json report = {{"file", arguments.model.string()},    {"charts", atlas.charts},   {"packing", atlas.packing},
-                 {"distortion", atlas.distortion},      {"flipped", atlas.flipped}, {"seam_length", atlas.seam_length},
-                 {"seam_contrast", atlas.seam_contrast}};
+  Json report = {
+      {"file", arguments.model.string()}, {"charts", atlas.charts},           {"packing", atlas.packing},
+      {"distortion", atlas.distortion},   {"flipped", atlas.flipped},         {"overlap", atlas.overlap},
+      {"outside", atlas.outside},         {"seam_length", atlas.seam_length}, {"seam_contrast", atlas.seam_contrast}};
   const auto number = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
   if (trip)
     report.update({{"psnr", number(trip->psnr)},
@@ -47,7 +54,7 @@ int check_texture(const Arguments& arguments) {
                    {"ssim", number(trip->ssim)},
                    {"ghosting", number(trip->ghosting)}});
   std::cout << report.dump(2) << '\n';
-  return kDone;
+  return result;
 }
 
 }  // namespace
@@ -62,6 +69,9 @@ int main(int argc, char** argv) {
   app.add_flag("--json", arguments.json, "JSON on standard output");
   app.add_option("--sheet", arguments.sheet, "picture of the model from four sides, its texture beside")
       ->type_name("FILE");
+  app.add_option("--differences", arguments.differences,
+                 "picture of every drawing, the model seen in it and where their colours differ")
+      ->type_name("FILE");
   app.add_option("--size", arguments.size, "pixels along a picture's side")->check(CLI::Range(32, 4096));
   add_threads_flag(app);
   std::vector<Field> options;
@@ -70,7 +80,9 @@ int main(int argc, char** argv) {
   add_flags(app, options);
   app.footer(
       "Example:\n  texture_check model.glb --front f.png --side s.png --top t.png --sheet model.png\n"
-      "Exit codes: 0 done, 1 the work could not be done, 2 wrong usage or bad input.");
+      "Exit codes: 0 done, 1 the work could not be done, 2 wrong usage or bad input, 3 charts overlap, lie face down "
+      "or\n"
+      "leave the texture.");
   return run_program(app, argc, argv, [&] {
     std::erase_if(arguments.drawings, [](const auto& entry) { return entry.second.empty(); });
     return check_texture(arguments);

@@ -1,6 +1,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <numeric>
 #include <ostream>
@@ -94,24 +95,52 @@ void score_seams(const TexturedMesh& model, AtlasScores& scores) {
   if (scores.seam_length > 0) scores.seam_contrast = contrast / scores.seam_length;
 }
 
+double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+void score_overlap(const TexturedMesh& model, AtlasScores& scores) {
+  constexpr double kInside = 1e-5;  // of a triangle's height: neighbours share what lies on their edge
+  for (const Vec2& uv : model.uvs) scores.outside += !(uv.minCoeff() >= 0 && uv.maxCoeff() <= 1);
+  Mask covered(model.texture.width, model.texture.height);
+  const Vec2 size(covered.width, covered.height);
+  for (const auto& [i, j, k] : model.uv_triangles) {
+    const Vec2 p[] = {model.uvs[i].cwiseProduct(size), model.uvs[j].cwiseProduct(size),
+                      model.uvs[k].cwiseProduct(size)};
+    const double area = cross(p[1] - p[0], p[2] - p[0]);
+    if (area == 0 || !std::isfinite(area)) continue;
+    const Vec2 low = p[0].cwiseMin(p[1]).cwiseMin(p[2]).cwiseMax(0);
+    const Vec2 high = p[0].cwiseMax(p[1]).cwiseMax(p[2]).cwiseMin(size - Vec2::Ones());
+    for (int y = static_cast<int>(low.y()); y <= high.y(); ++y)
+      for (int x = static_cast<int>(low.x()); x <= high.x(); ++x) {
+        const Vec2 centre(x + 0.5, y + 0.5);
+        bool inside = true;
+        for (int e = 0; e < 3; ++e) inside &= cross(p[(e + 1) % 3] - p[e], centre - p[e]) / area > kInside;
+        if (!inside) continue;
+        scores.overlap += covered(x, y) == 1;
+        if (covered(x, y) < 2) ++covered(x, y);
+      }
+  }
+}
+
 }  // namespace
 
 AtlasScores atlas_scores(const TexturedMesh& model) {
   AtlasScores scores;
   scores.charts = count_charts(model);
   score_distortion(model, scores);
+  score_overlap(model, scores);
   score_seams(model, scores);
   return scores;
 }
 
 std::ostream& operator<<(std::ostream& out, const AtlasScores& s) {
-  char text[400];
+  char text[500];
   std::snprintf(
       text, sizeof text,
       "charts           %lld\npacking          %.4f\ndistortion       %.4f   mean symmetric Dirichlet energy, 4 = "
-      "isometric\nflipped          %lld\nseam length      %.4f\nseam contrast    %.3f   RGB distance\n",
-      static_cast<long long>(s.charts), s.packing, s.distortion, static_cast<long long>(s.flipped), s.seam_length,
-      s.seam_contrast);
+      "isometric\nflipped          %lld\noverlap          %lld   texels in two triangles\noutside          %lld   "
+      "coordinates not in [0, 1]\nseam length      %.4f\nseam contrast    %.3f   RGB distance\n",
+      static_cast<long long>(s.charts), s.packing, s.distortion, static_cast<long long>(s.flipped),
+      static_cast<long long>(s.overlap), static_cast<long long>(s.outside), s.seam_length, s.seam_contrast);
   return out << text;
 }
 

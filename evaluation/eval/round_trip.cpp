@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "carve/mesh/neighbours.h"
+#include "eval/ramp.h"
 #include "eval/render.h"
 #include "eval/texture_scores.h"
 
@@ -134,15 +135,52 @@ void mark_own(std::vector<Seeing>& all, const std::vector<Vec3>& normals) {
       }
 }
 
-}  // namespace
-
-RoundTrip round_trip(const TexturedMesh& model, const ViewSet& views) {
+std::vector<Seeing> see(const TexturedMesh& model, const ViewSet& views, const std::vector<Vec3>& normals) {
   if (model.texture.empty() || model.uv_triangles.size() != model.mesh.triangles.size())
     throw std::invalid_argument("the model must have a texture");
-  const std::vector<Vec3> normals = triangle_normals(model.mesh);
   std::vector<Seeing> all;
   for (const AlignedView& view : views.views) all.push_back(see(model, view));
   mark_own(all, normals);
+  return all;
+}
+
+Rgba pixel(const Colour& c) {
+  const auto byte = [](float value) { return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0F, 255.0F))); };
+  return {byte(c[0]), byte(c[1]), byte(c[2]), 255};
+}
+
+}  // namespace
+
+Picture differences(const TexturedMesh& model, const ViewSet& views) {
+  constexpr double kRange = 128;
+  constexpr int kGap = 8;
+  const std::vector<Seeing> all = see(model, views, triangle_normals(model.mesh));
+  int width = 0, height = 0;
+  for (const AlignedView& view : views.views) {
+    width = std::max(width, view.drawing.bounds.width() + kGap);
+    height += view.drawing.bounds.height() + kGap;
+  }
+  Picture sheet(4 * width, height, {255, 255, 255, 255});
+  int top = 0;
+  for (const Seeing& s : all) {
+    const Box& box = s.view->drawing.bounds;
+    for (int y = box.y0; y < box.y1; ++y)
+      for (int x = box.x0; x < box.x1; ++x) {
+        Rgba* row = &sheet(x - box.x0, top + y - box.y0);
+        if (s.view->drawing.labels(x, y) != Label::background) row[0] = pixel(s.drawn(x, y));
+        if (s.covered(x, y)) row[width] = pixel(s.rendered(x, y));
+        if (s.compared(x, y))
+          row[(s.compared(x, y) == 2 ? 2 : 3) * width] =
+              colour(Ramp::sequential, (s.rendered(x, y) - s.drawn(x, y)).norm(), kRange);
+      }
+    top += box.height() + kGap;
+  }
+  return sheet;
+}
+
+RoundTrip round_trip(const TexturedMesh& model, const ViewSet& views) {
+  const std::vector<Vec3> normals = triangle_normals(model.mesh);
+  const std::vector<Seeing> all = see(model, views, normals);
   Errors own, every, raw;
   double ssim = 0, ghosts = 0;
   std::int64_t owned = 0, compared = 0;

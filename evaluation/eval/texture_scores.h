@@ -14,6 +14,8 @@ struct AtlasScores {
   double packing = 0;        // share of the texture's area that triangles cover
   double distortion = 0;     // mean symmetric Dirichlet energy by area, all charts at one scale; 4 = isometric
   std::int64_t flipped = 0;  // triangles laid out face down or without area; left out of the distortion
+  std::int64_t overlap = 0;  // texels whose centre lies inside two triangles
+  std::int64_t outside = 0;  // texture coordinates that are not in [0, 1]
   double seam_length = 0;    // of the mesh's edges along which coordinates differ, model units
   double seam_contrast = 0;  // mean RGB distance between the two sides of seams, by length
 };
@@ -33,6 +35,9 @@ struct RoundTrip {
 AtlasScores atlas_scores(const TexturedMesh& model);
 /// \param model  in the drawings' object units \throws std::invalid_argument if there is no texture
 RoundTrip round_trip(const TexturedMesh& model, const ViewSet& views);
+/// A row a drawing, as far as it is drawn on: the drawing, the model seen in it, their difference at the pixels of psnr
+/// and at the others of psnr_all (dark: none, yellow: RGB distance of 128 or more, white: not compared).
+Picture differences(const TexturedMesh& model, const ViewSet& views);
 
 std::ostream& operator<<(std::ostream& out, const AtlasScores& scores);  // a line a field
 std::ostream& operator<<(std::ostream& out, const RoundTrip& scores);

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "eval/meshes.h"
+#include "eval/ramp.h"
 #include "eval/render.h"
 #include "eval/texture_sheet.h"
 #include "texture/painted.h"
@@ -43,6 +44,18 @@ TEST(AtlasScores, CountTrianglesLaidFaceDownAndFeelStretch) {
   model = unfolded_cube();
   for (Vec2& uv : model.uvs) uv.y() /= 3;  // singular values 1 and 1/3, at one scale sqrt(3) and 1/sqrt(3)
   EXPECT_NEAR(atlas_scores(model).distortion, 2 * (3 + 1.0 / 3), 1e-9);
+}
+
+TEST(AtlasScores, CountOverlapsAndWhatLeavesTheTexture) {
+  TexturedMesh model = unfolded_cube();
+  EXPECT_EQ(atlas_scores(model).overlap, 0);
+  EXPECT_EQ(atlas_scores(model).outside, 0);
+  const Triangle first = model.uv_triangles[0], second = model.uv_triangles[1];
+  for (int k = 0; k < 3; ++k) model.uvs[second[k]] = model.uvs[first[k]];
+  EXPECT_NEAR(static_cast<double>(atlas_scores(model).overlap), 64.0 * 64 / 288, 9);  // half its border
+  for (int k = 0; k < 3; ++k) model.uvs[second[k]].x() -= 0.5;
+  EXPECT_EQ(atlas_scores(model).overlap, 0);
+  EXPECT_EQ(atlas_scores(model).outside, 3);
 }
 
 TEST(AtlasScores, SeamContrastIsTheDistanceOfTheTwoSides) {
@@ -91,6 +104,18 @@ TEST(RoundTrip, AWrongTextureIsSeen) {
   EXPECT_LT(*trip.psnr, 8);
   EXPECT_EQ(*trip.ghosting, 1);
   EXPECT_THROW(round_trip({scene.mesh, {}, {}, {}}, scene.views), std::invalid_argument);
+}
+
+TEST(Differences, AreYellowWhereTheTextureIsWrongAndDarkElsewhere) {
+  const Scene scene = ball_scene([](View, int, int) { return Rgba{200, 150, 100, 255}; });
+  TexturedMesh model = textured(scene);
+  const Rgba none = colour(Ramp::sequential, 0, 128), all = colour(Ramp::sequential, 128, 128);
+  const auto count = [&](Rgba c) { return std::ranges::count(differences(model, scene.views).pixels, c); };
+  EXPECT_GT(count(none), 10000);
+  EXPECT_EQ(count(all), 0);
+  std::ranges::fill(model.texture.pixels, Rgba{0, 0, 0, 255});
+  EXPECT_EQ(count(none), 0);
+  EXPECT_GT(count(all), 10000);
 }
 
 TEST(Render, ShowsTheTextureAsItIs) {
