@@ -247,6 +247,23 @@ TEST(BestView, TheBackTakesTheFrontOnlyWhereThin) {
   }
 }
 
+TEST(BestView, WhatADrawingShowsAtAnAngleWinsOverAGuess) {
+  // The back of the box slants, so that the side's drawing sees it at 68 degrees; the front's would be a guess.
+  Scene scene = carve::scene(box({1, 0.75, 0.5}), plain);
+  for (Vec3& p : scene.mesh.positions) p.z() = 0.25 - (0.25 - p.z()) * (0.6 - 0.8 * p.x());
+  for (const double agree : {0.0, TextureOptions{}.agree}) {
+    TextureOptions options = arm(TextureArm::best_view, Mirror::yes);
+    options.agree = agree;
+    const ViewChoice choice = choose_views(scene.mesh, scene.views, Drawings(scene.views, options), options);
+    const View taken = agree > 0 ? View::side : View::front;
+    EXPECT_GT(
+        for_triangles_near(
+            scene.mesh, {0.1, 0.375, -0.01}, 0.1,
+            [&](int t) { EXPECT_EQ(scene.views.views[choice.projections[choice.projection[t]].view].view, taken); }),
+        4);
+  }
+}
+
 TEST(BestView, StrokesDoNotReachTheTexture) {
   const Scene scene = carve::scene(stairs(4), plain, {.pixels = 160, .stroke = 4}, 64);
   const TexturedMesh model = textured(scene);

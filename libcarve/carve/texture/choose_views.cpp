@@ -111,7 +111,7 @@ class Chooser {
         }
         for (std::size_t p = 0; p < projections.size() && !witnesses.empty(); ++p)
           if (costs[p] < PottsProblem::kImpossible)
-            costs[p] += scaled(options_.agree * areas_[t] * contradiction(witnesses, t, projections[p].view));
+            costs[p] += scaled(options_.agree * areas_[t] * contradiction(witnesses, t, projections[p]));
       }
     });
   }
@@ -124,18 +124,24 @@ class Chooser {
   Colour colour(int t, int view) const {
     return drawings_.at({{{view, 1}, {}, {}}}, (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3);
   }
-  // Taking no drawing where one could be taken is as wrong as a colour can be.
-  double contradiction(const std::vector<Witness>& witnesses, int t, int view) const {
+  // A drawing that sees the triangle at an angle has less to say against one that sees it straight, as small errors of
+  // the shape move its colours far. A guess must give way to all that is drawn; taking no drawing where one could be
+  // taken is as wrong as a colour can be.
+  double contradiction(const std::vector<Witness>& witnesses, int t, const Projection& projection) const {
     constexpr double kLargest = 441.7;  // black to white
-    const Colour taken = view < 0 ? Colour(Colour::Zero()) : colour(t, view);
+    const bool none = projection.view < 0, guess = none || (is_across(projection) && !is_mirrored(projection));
+    const Colour taken = none ? Colour(Colour::Zero()) : colour(t, projection.view);
     double sum = 0;
     for (const Witness& witness : witnesses)
-      sum += witness.cosine * (view < 0 ? kLargest : (witness.colour - taken).norm()) / 255;
+      sum += witness.cosine * (guess ? 1 : witness.cosine) * (none ? kLargest : (witness.colour - taken).norm()) / 255;
     return sum;
   }
   bool is_across(const Projection& projection) const {
     return projection.toward.sign != frame(views_.views[projection.view].view).toward.sign;
   }
+
+  // The other side of a symmetric object looks the same.
+  bool is_mirrored(const Projection& projection) const { return projection.toward.axis == 0 && symmetric_; }
 
   int cost(int t, const Projection& projection) const {
     const double straight = along(normals_[t], projection.toward), angle = 1 - along(smooth_[t], projection.toward);
@@ -152,9 +158,8 @@ class Chooser {
   // Three of four points of the triangle lie on the nearest (for the side across: farthest) surface.
   bool sees(int t, const Projection& projection, double straight) const {
     const DepthMap& map = maps_[projection.view];
-    const SignedAxis toward = frame(views_.views[projection.view].view).toward;
     const bool across = is_across(projection);
-    const bool anywhere = !across || options_.mirror == Mirror::yes || (toward.axis == 0 && symmetric_);
+    const bool anywhere = !across || options_.mirror == Mirror::yes || is_mirrored(projection);
     // A surface seen at an angle differs in depth within a pixel.
     const double slope = std::min(4.0, std::sqrt(1 - straight * straight) / straight);
     const double bias = map.pixel() * (1 + slope);

@@ -30,7 +30,7 @@ struct TextureOptions {
   Mirror mirror = Mirror::automatic;
   bool inpaint = true;
   int fringe = 1;
-  double agree = 3;
+  double agree = 20;
   double seam = 0.003;
   double steepest = 84;
   double thin = 0.06;
