@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <random>
+
 #include "carve/core/parallel.h"
 #include "eval/meshes.h"
+#include "mesh/solids.h"
 
 namespace carve {
 namespace {
@@ -31,6 +35,50 @@ TEST_P(SelfIntersections, AreFoundWhereShellsCross) {
   set_thread_count(1);
   EXPECT_EQ(pairs, self_intersections(both));
   set_thread_count(0);
+}
+
+/// What every two triangles say that stand alone, where nothing is known of what lies around them.
+Pairs of_every_two(const Mesh& mesh) {
+  Pairs pairs;
+  for (int i = 0; i < static_cast<int>(mesh.triangles.size()); ++i)
+    for (int j = i + 1; j < static_cast<int>(mesh.triangles.size()); ++j) {
+      const Mesh two{mesh.positions, {mesh.triangles[i], mesh.triangles[j]}};
+      if (!self_intersections(two).empty()) pairs.emplace_back(i, j);
+    }
+  return pairs;
+}
+
+TEST_P(SelfIntersections, AreThoseOfEveryTwoTriangles) {
+  const unsigned seed = GetParam();
+  const Mesh ball = ball_mesh(2);
+  for (const Mesh& whole :
+       {shaken(ball, seed, 0.4), shaken(torus_mesh(16, 8), seed, 0.15),
+        together(ball, mapped(ball, [&](const Vec3& p) { return Vec3(p + Vec3(0.002 * (1 << seed), 0.01, 0)); })),
+        together(grid_box(3), shaken(grid_box(3), seed, seed % 2 ? 0.3 : 0))}) {
+    const Pairs pairs = of_every_two(whole);
+    EXPECT_GT(pairs.size(), 3u);
+    EXPECT_EQ(self_intersections(whole), pairs);
+    Mesh open = whole;  // borders, and vertices without triangles
+    open.triangles.resize(open.triangles.size() / 2);
+    EXPECT_EQ(self_intersections(open), of_every_two(open));
+  }
+}
+
+TEST_P(SelfIntersections, OfMovedVerticesAreThoseOfTheirTriangles) {
+  const Mesh mesh = shaken(torus_mesh(24, 12), GetParam(), 0.06);
+  std::mt19937 random(GetParam());
+  for (const unsigned one_of : {2, 40}) {
+    std::vector<std::uint8_t> moved(mesh.positions.size());
+    for (std::uint8_t& m : moved) m = random() % one_of == 0;
+    Pairs expected;
+    const auto has_moved = [&](int t) {
+      return std::ranges::any_of(mesh.triangles[t], [&](int v) { return moved[v] != 0; });
+    };
+    for (const auto& [i, j] : self_intersections(mesh))
+      if (has_moved(i) || has_moved(j)) expected.emplace_back(i, j);
+    EXPECT_FALSE(expected.empty());
+    EXPECT_EQ(self_intersections(mesh, vertex_triangles(mesh), moved), expected);
+  }
 }
 
 TEST(SelfIntersections, ByOneSharedCornerEdgeOrTriangle) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -60,6 +61,33 @@ inline Mesh ball_mesh(int times = 3) {
     mesh.triangles = finer;
   }
   return mesh;
+}
+
+/// The unit cube with each face a grid of n by n squares.
+inline Mesh grid_box(int n) {
+  Mesh box;
+  std::map<std::array<int, 3>, int> known;
+  const auto vertex = [&](std::array<int, 3> at) {
+    const auto [found, is_new] = known.try_emplace(at, static_cast<int>(box.positions.size()));
+    if (is_new) box.positions.push_back(Vec3(at[0], at[1], at[2]) / n);
+    return found->second;
+  };
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int end : {0, n})
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+          const auto corner = [&](int u, int v) {
+            std::array<int, 3> at{};
+            at[axis] = end, at[(axis + 1) % 3] = i + u, at[(axis + 2) % 3] = j + v;
+            return vertex(at);
+          };
+          const int a = corner(0, 0), b = corner(1, 0), c = corner(1, 1), d = corner(0, 1);
+          if (end == 0)
+            box.triangles.insert(box.triangles.end(), {{a, c, b}, {a, d, c}});
+          else
+            box.triangles.insert(box.triangles.end(), {{a, b, c}, {a, c, d}});
+        }
+  return box;
 }
 
 /// Both meshes as one, sharing nothing.

@@ -7,12 +7,16 @@
 #include <numbers>
 
 #include "carve/carving/carve_silhouettes.h"
+#include "carve/core/error.h"
 #include "carve/core/parallel.h"
+#include "carve/mesh/self_intersections.h"
 #include "carve/mesh/topology.h"
 #include "carve/surface/marching_cubes.h"
 #include "carve/surface/sharpen.h"
 #include "mesh/solids.h"
+#include "models/procedural.h"
 #include "shapes.h"
+#include "synthesize/synthesize.h"
 
 namespace carve {
 namespace {
@@ -84,33 +88,6 @@ TEST_P(SmoothTest, ThreadsDoNotChangeABit) {
   EXPECT_EQ(one, four);
 }
 
-// A box with each face a grid: all its edges are right angles, its faces plane.
-Mesh grid_box(int n) {
-  Mesh box;
-  std::map<std::array<int, 3>, int> known;
-  const auto vertex = [&](std::array<int, 3> at) {
-    const auto [found, is_new] = known.try_emplace(at, static_cast<int>(box.positions.size()));
-    if (is_new) box.positions.push_back(Vec3(at[0], at[1], at[2]) / n);
-    return found->second;
-  };
-  for (int axis = 0; axis < 3; ++axis)
-    for (const int end : {0, n})
-      for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j) {
-          const auto corner = [&](int u, int v) {
-            std::array<int, 3> at{};
-            at[axis] = end, at[(axis + 1) % 3] = i + u, at[(axis + 2) % 3] = j + v;
-            return vertex(at);
-          };
-          const int a = corner(0, 0), b = corner(1, 0), c = corner(1, 1), d = corner(0, 1);
-          if (end == 0)
-            box.triangles.insert(box.triangles.end(), {{a, c, b}, {a, d, c}});
-          else
-            box.triangles.insert(box.triangles.end(), {{a, b, c}, {a, c, d}});
-        }
-  return box;
-}
-
 TEST(Smooth, AConvexSolidShrinksAtEveryStep) {
   for (const Mesh& solid : {ball_mesh(2), ball_mesh(4), grid_box(5)}) {
     double volume = topology(solid).volume;
@@ -175,14 +152,17 @@ struct Guided {
   Mesh mesh;
   Guides guides;
 };
-Guided sharp_hull(const Shape& shape, int grid) {
-  const ViewSet views = aligned(shape, kThreeViews, {.pixels = 300});
+Guided sharp_hull(const ViewSet& views, int grid) {
   const VoxelGrid hull = carve_silhouettes(views, {.grid = grid}).grid;
   const Crossings crossings = contour_crossings(views, hull);
   const Mesh mesh = marching_cubes(hull, crossings);
   Guides guides = vertex_guides(mesh, hull, crossings);
   Mesh sharp = sharpen(mesh, hull, guides);
   return {std::move(sharp), std::move(guides)};
+}
+
+Guided sharp_hull(const Shape& shape, int grid) {
+  return sharp_hull(aligned(shape, kThreeViews, {.pixels = 300}), grid);
 }
 
 TEST(Smooth, KeptBoxesAndStairsStayExact) {
@@ -214,6 +194,46 @@ TEST(Smooth, KeptVerticesSlideAlongTheirGuides) {
   }
 }
 
+/// \return whether it did without mending
+bool expect_no_passing_through_itself(const Guided& hull, const std::string& what) {
+  const Mesh torn = smooth(hull.mesh, {.mend = false}, {}, hull.guides);
+  const std::size_t meeting = self_intersections(torn).size();
+  const Mesh mended = smooth(hull.mesh, {}, {}, hull.guides);
+  EXPECT_EQ(self_intersections(mended).size(), 0u) << what << ", " << meeting << " if not mended";
+  EXPECT_EQ(topology(mended).degenerate_triangles, 0) << what;
+  std::size_t moved = 0;
+  for (std::size_t v = 0; v < torn.positions.size(); ++v)
+    moved += !mended.positions[v].isApprox(torn.positions[v], 1e-9);
+  EXPECT_LE(moved, 24 * meeting) << what;
+  return meeting > 0;
+}
+
+TEST(Smooth, RandomSilhouettesDoNotPassThroughThemselves) {
+  int solids = 0, torn = 0;
+  for (unsigned seed = 0; solids < 300; ++seed) {
+    ASSERT_LT(seed, 1000u);
+    const Vec3i size(6 + static_cast<int>(seed % 9), 6 + static_cast<int>(seed % 7), 6 + static_cast<int>(seed % 5));
+    try {
+      const Guided hull = sharp_hull(views_of_masks(random_masks(size, seed)), 8 + static_cast<int>(seed % 17));
+      torn += expect_no_passing_through_itself(hull, std::to_string(seed));
+      ++solids;
+    } catch (const NoResult&) {
+    }
+  }
+  EXPECT_GT(torn, 50);
+}
+
+TEST(Smooth, ModelsDoNotPassThroughThemselves) {
+  int torn = 0;
+  for (const ProceduralModel& model : procedural_models()) {
+    std::map<View, Drawing> drawings;
+    for (auto& [view, picture] : synthesize(model.make(), {.size = 256}))
+      drawings.emplace(view, understand_drawing(std::move(picture)));
+    torn += expect_no_passing_through_itself(sharp_hull(align(std::move(drawings)), 64), model.name);
+  }
+  EXPECT_GT(torn, 3);
+}
+
 TEST(Smooth, RefusesGuidesOfAnotherMesh) {
   EXPECT_THROW(smooth(tetrahedron_mesh(), {.keep = true}, {}, Guides(3)), std::invalid_argument);
   EXPECT_EQ(smooth(tetrahedron_mesh(), {.keep = true}), smooth(tetrahedron_mesh()));
@@ -227,7 +247,7 @@ TEST(Smooth, AVertexOfManyTrianglesCostsNoSquare) {
     cone.triangles.push_back({kSides, i, (i + 1) % kSides});
   }
   cone.positions.emplace_back(0, 1, 0);
-  const Vec3 apex = smooth(cone, {.steps = 1}).positions.back();
+  const Vec3 apex = smooth(cone, {.steps = 1, .mend = false}).positions.back();
   EXPECT_NEAR(apex.y(), 0, 1e-12);
 }
 

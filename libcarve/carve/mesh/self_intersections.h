@@ -1,14 +1,23 @@
 #pragma once
+#include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "carve/mesh/adjacency.h"
 #include "carve/mesh/mesh.h"
 
 namespace carve {
 
 /// Pairs (i < j, sorted) of triangles that meet elsewhere than in the corners and sides they share by index: crossing,
 /// touching, overlapping or folded onto each other. Decided by exact predicates. Triangles without area are left out
-/// (Topology::degenerate_triangles counts them). \throws std::invalid_argument as build_bvh
+/// (Topology::degenerate_triangles counts them). Seconds per million triangles: about 0.2.
+/// \throws std::invalid_argument as check_mesh, or on a coordinate beyond 1e100
 std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh);
+
+/// Only the pairs in which a triangle has a vertex whose `moved` is not 0; all if `moved` is empty.
+/// \param around  vertex_triangles(mesh)
+std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const VertexTriangles& around,
+                                                    std::span<const std::uint8_t> moved = {});
 
 }  // namespace carve

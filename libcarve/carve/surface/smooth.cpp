@@ -11,6 +11,7 @@
 #include "carve/core/options.h"
 #include "carve/core/parallel.h"
 #include "carve/mesh/adjacency.h"
+#include "carve/mesh/self_intersections.h"
 
 namespace carve {
 namespace {
@@ -20,8 +21,8 @@ constexpr double kInwards = 0.5, kOutwards = 1 / (0.1 - 1 / kInwards);  // 1 / i
 
 // The one-ring of each vertex: its neighbours, once each.
 struct Rings {
-  std::vector<std::uint32_t> first;  // #V + 1
-  std::vector<int> neighbours;
+  std::vector<int> sizes;
+  std::vector<int> neighbours;  // room for two a triangle around the vertex: of fans that are not closed
 };
 
 void collect_ring(const Mesh& mesh, std::span<const int> triangles, int vertex, std::vector<int>& ring) {
@@ -39,22 +40,14 @@ void collect_ring(const Mesh& mesh, std::span<const int> triangles, int vertex, 
 }
 
 Rings one_rings(const Mesh& mesh, const VertexTriangles& around) {
-  const int vertices = static_cast<int>(mesh.positions.size());
-  Rings rings{std::vector<std::uint32_t>(vertices + 1), {}};
-  const auto each_ring = [&](auto use) {
-    parallel_ranges(0, vertices, kGrain, [&](int first, int last) {
-      std::vector<int> ring;
-      for (int v = first; v < last; ++v) {
-        collect_ring(mesh, around[v], v, ring);
-        use(v, ring);
-      }
-    });
-  };
-  each_ring([&](int v, const std::vector<int>& ring) { rings.first[v + 1] = static_cast<std::uint32_t>(ring.size()); });
-  for (int v = 0; v < vertices; ++v) rings.first[v + 1] += rings.first[v];
-  rings.neighbours.resize(rings.first.back());
-  each_ring([&](int v, const std::vector<int>& ring) {
-    std::copy(ring.begin(), ring.end(), rings.neighbours.begin() + rings.first[v]);
+  Rings rings{std::vector<int>(mesh.positions.size()), std::vector<int>(2 * around.triangles.size())};
+  parallel_ranges(0, static_cast<int>(rings.sizes.size()), kGrain, [&](int first, int last) {
+    std::vector<int> ring;
+    for (int v = first; v < last; ++v) {
+      collect_ring(mesh, around[v], v, ring);
+      rings.sizes[v] = static_cast<int>(ring.size());
+      std::copy(ring.begin(), ring.end(), rings.neighbours.begin() + 2 * std::size_t{around.first[v]});
+    }
   });
   return rings;
 }
@@ -110,6 +103,32 @@ Vec3 guided(const Vec3& step, const Guide& guide) {
   }
 }
 
+/// Puts vertices of triangles that meet back to where they were `before`, half the way first, until no more meet than
+/// did there.
+void mend(Mesh& mesh, const std::vector<Vec3>& before, const VertexTriangles& around) {
+  constexpr double kStill = 1e-12;  // of a coordinate: what rounding moves stays
+  std::vector<std::uint8_t> moved(before.size()), tries(before.size());
+  parallel_ranges(0, static_cast<int>(moved.size()), kGrain, [&](int first, int last) {
+    for (int v = first; v < last; ++v) {
+      const double largest = before[v].cwiseAbs().maxCoeff();
+      moved[v] = (mesh.positions[v] - before[v]).cwiseAbs().maxCoeff() > kStill * largest;
+      if (!moved[v]) mesh.positions[v] = before[v];
+    }
+  });
+  for (bool again = true; again;) {
+    again = false;
+    const auto meeting = self_intersections(mesh, around, moved);
+    std::fill(moved.begin(), moved.end(), 0);
+    for (const auto& [i, j] : meeting)
+      for (const int t : {i, j})
+        for (const int v : mesh.triangles[t])
+          if (!moved[v] && mesh.positions[v] != before[v]) {
+            mesh.positions[v] = tries[v]++ ? before[v] : Vec3((mesh.positions[v] + before[v]) / 2);
+            moved[v] = again = true;
+          }
+  }
+}
+
 }  // namespace
 
 Mesh smooth(Mesh mesh, const SmoothOptions& options, const Monitor& monitor, const Guides& guides) {
@@ -123,16 +142,17 @@ Mesh smooth(Mesh mesh, const SmoothOptions& options, const Monitor& monitor, con
                                                               : std::vector<std::uint8_t>(mesh.positions.size());
   const Rings rings = one_rings(mesh, around);
   const Guide* guide = options.keep && !guides.empty() ? guides.data() : nullptr;
+  const std::vector<Vec3> before = options.mend ? mesh.positions : std::vector<Vec3>();
   std::vector<Vec3> moved(mesh.positions.size());
   const auto move = [&](double share) {
     parallel_ranges(0, static_cast<int>(moved.size()), kGrain, [&](int first, int last) {
       for (int v = first; v < last; ++v) {
         const Vec3& position = mesh.positions[v];
-        const std::uint32_t begin = rings.first[v], end = sharp[v] ? begin : rings.first[v + 1];
+        const std::span ring(rings.neighbours.data() + 2 * std::size_t{around.first[v]}, sharp[v] ? 0 : rings.sizes[v]);
         // Summing differences, as Equation 3.7 does, keeps planes exactly plane.
         Vec3 sum = Vec3::Zero();
-        for (std::uint32_t i = begin; i < end; ++i) sum += mesh.positions[rings.neighbours[i]] - position;
-        if (end > begin) sum *= share / (end - begin);
+        for (const int other : ring) sum += mesh.positions[other] - position;
+        if (!ring.empty()) sum *= share / static_cast<double>(ring.size());
         moved[v] = position + (guide ? guided(sum, guide[v]) : sum);
       }
     });
@@ -147,6 +167,7 @@ Mesh smooth(Mesh mesh, const SmoothOptions& options, const Monitor& monitor, con
       move(kOutwards);
     }
   }
+  if (options.mend) mend(mesh, before, around);
   monitor.at("smooth", 1);
   return mesh;
 }

@@ -21,6 +21,7 @@ struct SmoothOptions {
   double level = 180;  // degrees
   Smoothing method = Smoothing::laplacian;
   bool keep = true;
+  bool mend = true;
 };
 template <class Visitor>
 void visit_fields(SmoothOptions& o, Visitor&& field) {
@@ -30,12 +31,14 @@ void visit_fields(SmoothOptions& o, Visitor&& field) {
   field("method", o.method, "laplacian shrinks, taubin keeps the volume");
   field("keep", o.keep,
         "with intersections: outlines, edges and corners that the drawings show stay, vertices slide along them");
+  field("mend", o.mend, "vertices go back to where they were if the surface would pass through itself");
 }
 
 /// Laplacian smoothing (thesis 3.1.6, Equation 3.7; level: A.1.3.2) \cite bardyn_2010: each step moves every vertex to
 /// the mean of its one-ring, all at once; a vertex on an edge sharper than `level` stays. Taubin's steps go half the
 /// way there, then a little more than half the way back, which leaves all but the rough alone. Topology is kept; zero
-/// steps or level 0 is the identity. \param guides  with `keep`: one a vertex, which limits each of its steps; or none
+/// steps or level 0 is the identity. With `mend` a mesh that does not pass through itself (mesh/self_intersections.h)
+/// does not afterwards either. \param guides  with `keep`: one a vertex, which limits each of its steps; or none
 /// \throws std::invalid_argument on an option out of range, or guides of another mesh
 Mesh smooth(Mesh mesh, const SmoothOptions& options = {}, const Monitor& monitor = {}, const Guides& guides = {});
 
