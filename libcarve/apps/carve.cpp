@@ -189,8 +189,8 @@ int build(Arguments& arguments) {
   else
     write_textured_mesh(arguments.out, result.textured);
   for (const RefinementStep& step : result.refinement)
-    if (!step.kept && !arguments.quiet)
-      std::cerr << "carve: " << step.stage << " was rolled back: " << step.why << '\n';
+    if (!step.why.empty() && !arguments.quiet)
+      std::cerr << "carve: " << step.stage << (step.kept ? ": " : " was rolled back: ") << step.why << '\n';
   if (!arguments.report.empty())
     write_file(arguments.report, [&](std::ostream& out) { out << json_of(arguments, result).dump(2) << '\n'; });
   if (!arguments.quiet) {

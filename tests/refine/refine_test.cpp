@@ -54,6 +54,13 @@ TEST_P(Plates, AreNeverWorseAfterAnyStage) {
   }
 }
 
+TEST_P(Plates, AreDecimatedAsFarAsTheyStayAsTheyAre) {
+  const Mesh mesh = plates(GetParam());
+  const RefinedMesh less = refine(mesh, {.faces = static_cast<int>(mesh.triangles.size() / 6)});
+  EXPECT_TRUE(less.steps[0].kept) << less.steps[0].why;
+  EXPECT_LT(less.mesh.triangles.size(), mesh.triangles.size() / 2);
+}
+
 TEST(Refine, SomethingBreaksAndIsMended) {
   int put_back = 0, rolled_back = 0;
   for (unsigned seed = 0; seed < 4; ++seed) {

@@ -49,8 +49,9 @@ Mesh tangential(const Mesh& mesh, const StageOptions& options = {});
 /// ones among the parts that it borders on.
 Mesh segment(const Mesh& mesh, const StageOptions& options = {});
 
-/// Edge collapse by quadrics \cite garland_1997 to `faces` triangles, or as near as the link condition allows. Where
-/// the result passes through itself, the original vertices there are kept in another attempt.
+/// Edge collapse by quadrics \cite garland_1997 to `faces` triangles, or as near as the link condition allows without
+/// that the surface passes through itself more often than it did: where it would, vertices are kept in another attempt,
+/// and triangles then collapsed in several rounds.
 Mesh decimate(const Mesh& mesh, int faces);
 
 /// A closed surface without self-intersections around the mesh, whatever the mesh is (solid or not)
