@@ -64,14 +64,14 @@ struct Lanes {
 
 class Finder {
  public:
-  Finder(const Mesh& mesh, const VertexTriangles& around, std::span<const std::uint8_t> moved)
-      : mesh_(mesh), around_(around), moved_(moved), plain_(mesh.positions.size()) {
+  Finder(const Mesh& mesh, const VertexTriangles& around, std::span<const std::uint8_t> moved, double blur)
+      : mesh_(mesh), around_(around), moved_(moved), blur_(blur), plain_(mesh.positions.size()) {
     // Without a moved triangle around it a vertex only helps to find larger sheets.
     const bool few = !moved.empty() && std::ranges::count(moved, 0) > 7 * std::ssize(moved) / 8;
     parallel_ranges(0, static_cast<int>(plain_.size()), 1 << 12, [&](int first, int last) {
       for (int v = first; v < last; ++v)
         plain_[v] = (!few || std::ranges::any_of(around[v], [&](int t) { return has_moved(t); })) &&
-                    is_plain(mesh, around[v], v);
+                    is_plain(mesh, around[v], v, blur);
     });
   }
 
@@ -110,6 +110,7 @@ class Finder {
     centre_ = (low + high) / 2;
     const double half = (high - low).maxCoeff() / 2;
     scale_ = half > 1e-100 ? 1 / half : 1;
+    const auto slack = kSlack + static_cast<float>(blur_ * scale_);
     Part part;
     part.low.fill(-2), part.high.fill(2);
     part.boxes.resize(mesh_.triangles.size());
@@ -121,12 +122,12 @@ class Finder {
         const Vec3 most = in_box(p.cwiseMax(q).cwiseMax(r));
         Box& box = part.boxes[t];
         for (int k = 0; k < 3; ++k) {
-          box.low[k] = static_cast<float>(least[k]) - kSlack;
-          box.high[k] = static_cast<float>(most[k]) + kSlack;
+          box.low[k] = static_cast<float>(least[k]) - slack;
+          box.high[k] = static_cast<float>(most[k]) + slack;
         }
         box.triangle = t, box.moved = has_moved(t);
         box.is = plain_[a] && plain_[b] && plain_[c] ? kPlain : 0;
-        const Vec3i facing = faces(p, q, r);
+        const Vec3i facing = faces(p, q, r, blur_);
         for (int k = 0; k < 3; ++k) box.is |= (facing[k] > 0) << 2 * k | (facing[k] < 0) << (2 * k + 1);
       }
     });
@@ -189,7 +190,7 @@ class Finder {
       if (!within(place, part.low, part.high)) continue;
       int times = 0;
       for (const Box& other : part.boxes)
-        if (within(place, other.low, other.high)) times += crossings(mesh_, other.triangle, point, axis);
+        if (within(place, other.low, other.high)) times += crossings(mesh_, other.triangle, point, axis, blur_);
       return times == 1;
     }
     return false;
@@ -212,7 +213,8 @@ class Finder {
       const Box& a = part.boxes[i];
       for (const int j : lanes.overlapping(a, i)) {
         const Box& b = part.boxes[j];
-        if ((a.moved | b.moved) & !side_by_side(a.triangle, b.triangle) && !are_apart(mesh_, a.triangle, b.triangle))
+        if ((a.moved | b.moved) & !side_by_side(a.triangle, b.triangle) &&
+            !are_apart(mesh_, a.triangle, b.triangle, blur_))
           found.push_back(std::minmax(a.triangle, b.triangle));
       }
     }
@@ -229,6 +231,7 @@ class Finder {
   const Mesh& mesh_;
   const VertexTriangles& around_;
   const std::span<const std::uint8_t> moved_;
+  const double blur_;
   std::vector<std::uint8_t> plain_;  // bytes: written by several threads
   Vec3 centre_ = Vec3::Zero();
   double scale_ = 1;
@@ -236,8 +239,8 @@ class Finder {
 
 }  // namespace
 
-Pairs near_pairs(const Mesh& mesh, const VertexTriangles& around, std::span<const std::uint8_t> moved) {
-  return Finder(mesh, around, moved).pairs();
+Pairs near_pairs(const Mesh& mesh, const VertexTriangles& around, std::span<const std::uint8_t> moved, double blur) {
+  return Finder(mesh, around, moved, blur).pairs();
 }
 
 }  // namespace carve

@@ -13,8 +13,9 @@ namespace carve {
 /// they share by index: all that do meet elsewhere, and few others.
 /// \param around  vertex_triangles(mesh)
 /// \param moved  one a vertex: only pairs with a vertex that is not 0; empty: all
+/// \param blur  by how much each coordinate may be off
 /// \throws std::invalid_argument: a coordinate beyond 1e100
 std::vector<std::pair<int, int>> near_pairs(const Mesh& mesh, const VertexTriangles& around,
-                                            std::span<const std::uint8_t> moved = {});
+                                            std::span<const std::uint8_t> moved = {}, double blur = 0);
 
 }  // namespace carve

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "carve/core/parallel.h"
 #include "carve/mesh/near_pairs.h"
@@ -65,12 +66,25 @@ std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh) {
 }
 
 std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const VertexTriangles& around,
-                                                    std::span<const std::uint8_t> moved) {
-  std::vector<std::pair<int, int>> pairs = near_pairs(mesh, around, moved);
-  const Exactly exactly(mesh);
+                                                    std::span<const std::uint8_t> moved, bool as_floats) {
+  double largest = 0;
+  Mesh rounded;
+  if (as_floats) {
+    rounded.triangles = mesh.triangles;
+    for (const Vec3& p : mesh.positions) {
+      largest = std::max(largest, p.cwiseAbs().maxCoeff());
+      rounded.positions.push_back(p.cast<float>().cast<double>());
+    }
+  }
+  std::vector<std::pair<int, int>> pairs =
+      near_pairs(mesh, around, moved, largest * std::numeric_limits<float>::epsilon());
+  const Exactly exactly(mesh), as_written(rounded);
   std::vector<std::uint8_t> meeting(pairs.size());
   parallel_ranges(0, static_cast<int>(pairs.size()), 256, [&](int first, int last) {
-    for (int i = first; i < last; ++i) meeting[i] = exactly.meet(pairs[i].first, pairs[i].second);
+    for (int k = first; k < last; ++k) {
+      const auto [i, j] = pairs[k];
+      meeting[k] = exactly.meet(i, j) || (as_floats && as_written.meet(i, j));
+    }
   });
   std::size_t kept = 0;
   for (std::size_t i = 0; i < pairs.size(); ++i)

@@ -17,7 +17,8 @@ std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh);
 
 /// Only the pairs in which a triangle has a vertex whose `moved` is not 0; all if `moved` is empty.
 /// \param around  vertex_triangles(mesh)
+/// \param as_floats  also those that meet once coordinates are rounded to floats, as GLB and STL files hold them
 std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const VertexTriangles& around,
-                                                    std::span<const std::uint8_t> moved = {});
+                                                    std::span<const std::uint8_t> moved = {}, bool as_floats = false);
 
 }  // namespace carve

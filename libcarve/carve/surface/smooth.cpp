@@ -117,7 +117,7 @@ void mend(Mesh& mesh, const std::vector<Vec3>& before, const VertexTriangles& ar
   });
   for (bool again = true; again;) {
     again = false;
-    const auto meeting = self_intersections(mesh, around, moved);
+    const auto meeting = self_intersections(mesh, around, moved, true);
     std::fill(moved.begin(), moved.end(), 0);
     for (const auto& [i, j] : meeting)
       for (const int t : {i, j})

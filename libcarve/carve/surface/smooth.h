@@ -38,8 +38,8 @@ void visit_fields(SmoothOptions& o, Visitor&& field) {
 /// the mean of its one-ring, all at once; a vertex on an edge sharper than `level` stays. Taubin's steps go half the
 /// way there, then a little more than half the way back, which leaves all but the rough alone. Topology is kept; zero
 /// steps or level 0 is the identity. With `mend` a mesh that does not pass through itself (mesh/self_intersections.h)
-/// does not afterwards either. \param guides  with `keep`: one a vertex, which limits each of its steps; or none
-/// \throws std::invalid_argument on an option out of range, or guides of another mesh
+/// does not afterwards either, nor once it is rounded to floats. \param guides  with `keep`: one a vertex, which limits
+/// each of its steps; or none \throws std::invalid_argument on an option out of range, or guides of another mesh
 Mesh smooth(Mesh mesh, const SmoothOptions& options = {}, const Monitor& monitor = {}, const Guides& guides = {});
 
 }  // namespace carve
