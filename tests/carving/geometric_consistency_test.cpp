@@ -133,6 +133,36 @@ TEST(Consistency, ABoxIsTheOnlySolidOfItsDrawings) {
   EXPECT_TRUE(box.open_cells.empty());
 }
 
+TEST_P(ConsistencyTest, WhatAddsJumpsAndExplainsTooFewStrokesIsRestored) {
+  const ViewSet views = views_of(random_pockets(GetParam()), kThreeViews);
+  const Carving hull = carve_silhouettes(views, {.grid = 24});
+  std::vector<RegionMap> regions;
+  for (const AlignedView& view : views.views) regions.push_back(find_regions(view, hull.grid));
+  const Cells cells = partition(hull.grid, regions);
+  CellProblem problem(cells, hull.grid.size(), regions, {});
+  for (int c = 0; c < cells.count; ++c) {
+    const std::int64_t strokes = problem.strokes(), jumps = problem.jumps();
+    problem.flip(std::span(&c, 1));
+    const bool supported = 4 * (problem.jumps() - jumps) <= strokes - problem.strokes();
+    restore_unexplained(problem);
+    EXPECT_EQ(problem.keep()[c] != 0, !supported) << c;
+    if (supported) problem.flip(std::span(&c, 1));
+  }
+  EXPECT_EQ(std::ranges::count(problem.keep(), 1), cells.count);
+}
+
+TEST_P(ConsistencyTest, EnergyDoesNotDependOnTheGrid) {
+  const ViewSet views = views_of(random_pockets(GetParam()), kThreeViews);
+  const auto energy = [&](int grid) {
+    const Carving hull = carve_silhouettes(views, {.grid = grid});
+    std::vector<RegionMap> regions;
+    for (const AlignedView& view : views.views) regions.push_back(find_regions(view, hull.grid));
+    return static_cast<double>(CellProblem(partition(hull.grid, regions), hull.grid.size(), regions, {}).energy());
+  };
+  const double coarse = energy(36), fine = energy(72);
+  EXPECT_NEAR(coarse / fine, 1, 0.1);
+}
+
 TEST_P(ConsistencyTest, SolidsThatExplainAsMuchAreCounted) {
   const ViewSet views = views_of(random_pockets(GetParam()), kThreeViews);
   const Carving hull = carve_silhouettes(views, {.grid = 24});

@@ -19,30 +19,19 @@ struct SequenceHash {
 
 double ramp(double x, double low, double high) { return std::clamp((x - low) / (high - low), 0.0, 1.0); }
 
-/// What a pair of neighbouring pixels pays for a depth jump of so many voxels.
+/// What a pair of neighbouring pixels pays for a depth jump of so many voxels, or none.
 class JumpCost {
  public:
   JumpCost(int resolution, const CellWeights& weights) : n_(resolution), weights_(weights) {}
-  std::int32_t operator()(Border border, int jump) const {
-    const double share = jump / n_;
-    double cost = 0;
-    switch (border) {
-      case Border::none:
-        cost = weights_.unexplained * ramp(share, 0.02, 0.06);
-        break;
-      case Border::colour:
-        cost = weights_.colour * ramp(share, 0.02, 0.06);
-        break;
-      case Border::stroke:
-        cost = 1 - ramp(share, 0.008, 0.02);
-        break;
-      case Border::open:
-        cost = weights_.open * (1 - ramp(share, 0.008, 0.02));
-        break;
-      case Border::near:
-        break;
-    }
-    return static_cast<std::int32_t>(std::lround(CellProblem::kUnit * cost));
+  double stroke(Border border, int jump) const {
+    const double weight = border == Border::stroke ? 1 : border == Border::open ? weights_.open : 0;
+    return weight * (1 - ramp(jump / n_, 0.008, 0.02));
+  }
+  double elsewhere(Border border, int jump) const {
+    const double weight = border == Border::none     ? weights_.unexplained
+                          : border == Border::colour ? weights_.colour
+                                                     : 0;
+    return weight * ramp(jump / n_, 0.02, 0.06);
   }
 
  private:
@@ -59,8 +48,7 @@ std::vector<std::array<std::int64_t, 15>> clashes(const Cells& cells, std::span<
     for (std::size_t v = 1, pair = 0; v < views.size(); ++v)
       for (std::size_t w = 0; w < v; ++w, ++pair) {
         const Vec3 difference = views[v].colour[cells.regions[c][v]] - views[w].colour[cells.regions[c][w]];
-        out[c][pair] =
-            std::llround(CellProblem::kUnit * weight * ramp(difference.cwiseAbs().maxCoeff(), kSame, kOther));
+        out[c][pair] = std::llround(weight * ramp(difference.cwiseAbs().maxCoeff(), kSame, kOther));
       }
   }
   return out;
@@ -95,8 +83,9 @@ CellProblem::CellProblem(const Cells& cells, const Vec3i& size, std::span<const 
                          const CellWeights& weights)
     : keep_(cells.count, 1), classes_of_(cells.count), contacts_(cells.count) {
   const JumpCost cost(size.maxCoeff(), weights);
+  const double side = kUnit * 128 / size.maxCoeff(), face = side * side / kUnit, voxel = face * side / kUnit;
   sight_.resize(cells.count);
-  buried_ = weights.buried;
+  buried_ = voxel * weights.buried;
   volume_ = cells.volume;
   int v = -1;
   for (const RegionMap& view : views) {
@@ -120,7 +109,7 @@ CellProblem::CellProblem(const Cells& cells, const Vec3i& size, std::span<const 
         }
         ++classes_[found->second].pixels;
         for (const RayEntry& e : ray) ++sight_[e.cell][v].pixels;
-        classes_[found->second].empty += std::llround(kUnit * weights.silhouette);
+        classes_[found->second].empty += std::llround(face * weights.silhouette);
         at[static_cast<std::size_t>(j) * rays.width + i] = found->second;
       }
     std::unordered_map<std::uint64_t, int> group_of;
@@ -133,14 +122,18 @@ CellProblem::CellProblem(const Cells& cells, const Vec3i& size, std::span<const 
       const auto [found, fresh] =
           group_of.emplace(static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint32_t>(b), groups_.size());
       if (fresh) {
-        groups_.push_back({a, b, static_cast<int>(tables_.size()), 0});
-        tables_.resize(tables_.size() + ra.size() * rb.size(), 0);
+        groups_.push_back({a, b, static_cast<int>(tables_.size()), {}});
+        tables_.resize(tables_.size() + ra.size() * rb.size());
         classes_[a].groups.push_back(found->second);
         if (a != b) classes_[b].groups.push_back(found->second);
       }
-      std::int32_t* table = tables_.data() + groups_[found->second].table;
+      Pay* table = tables_.data() + groups_[found->second].table;
       for (const RayEntry& ea : ra)
-        for (const RayEntry& eb : rb) *table++ += cost(border, std::abs(ea.depth - eb.depth));
+        for (const RayEntry& eb : rb) {
+          const int jump = std::abs(ea.depth - eb.depth);
+          table->stroke += static_cast<std::int32_t>(std::lround(side * cost.stroke(border, jump)));
+          table++->jump += static_cast<std::int32_t>(std::lround(side * cost.elsewhere(border, jump)));
+        }
     };
     for (int j = 0; j < rays.height; ++j)
       for (int i = 0; i < rays.width; ++i) {
@@ -149,25 +142,28 @@ CellProblem::CellProblem(const Cells& cells, const Vec3i& size, std::span<const 
       }
   }
   for (const CellContact& c : contacts(cells, size)) {
-    const std::int64_t area = std::llround(kUnit * weights.area * c.faces);
+    const std::int64_t area = std::llround(face * weights.area * c.faces);
     contacts_[c.a].push_back({c.b, area});
     if (c.b >= 0)
       contacts_[c.b].push_back({c.a, area});
     else
       energy_ += area;
   }
-  for (const std::int64_t v : cells.volume) volume_cost_.push_back(std::llround(kUnit * weights.volume * v));
+  for (const std::int64_t v : cells.volume) volume_cost_.push_back(std::llround(voxel * weights.volume * v));
   for (Class& c : classes_) {
     c.first = first_of(c);
     set_open(c, 0, std::min(c.first + 1, c.length), 1);
   }
-  for (Group& g : groups_) misfit_ += g.value = value_of(g);
-  energy_ += misfit_;
+  for (Group& g : groups_) {
+    g.value = value_of(g);
+    strokes_ += g.value.stroke, jumps_ += g.value.jump;
+  }
+  energy_ += misfit();
   class_mark_.assign(classes_.size(), 0);
   group_mark_.assign(groups_.size(), 0);
   touch_mark_.assign(cells.count, 0);
-  clash_ = clashes(cells, views, weights.agreement);
-  symmetry_ = weights.symmetry;
+  clash_ = clashes(cells, views, face * weights.agreement);
+  symmetry_ = voxel * weights.symmetry;
   mirror_ = weights.symmetry > 0 ? mirror_images(cells, size) : std::vector<int>(cells.count, -1);
   touched_.clear();
   for (int c = 0; c < cells.count; ++c) {
@@ -182,9 +178,9 @@ int CellProblem::first_of(const Class& c) const {
   return k;
 }
 
-std::int64_t CellProblem::value_of(const Group& g) const {
+CellProblem::Pay CellProblem::value_of(const Group& g) const {
   const Class &a = classes_[g.a], &b = classes_[g.b];
-  if (a.first == a.length || b.first == b.length) return 0;
+  if (a.first == a.length || b.first == b.length) return {};
   return tables_[g.table + a.first * b.length + b.first];
 }
 
@@ -203,7 +199,7 @@ std::int64_t CellProblem::own_cost(int cell) const {
     double seen = 0;
     for (const Sight& s : sight)
       if (s.pixels > 0) seen += static_cast<double>(s.open) / s.pixels;
-    return std::llround(kUnit * buried_ * volume_[cell] * std::max(0.0, 2 - seen));
+    return std::llround(buried_ * volume_[cell] * std::max(0.0, 2 - seen));
   }
   std::int64_t cost = 0;
   for (int v = 1, pair = 0; v < 6; ++v)
@@ -214,13 +210,12 @@ std::int64_t CellProblem::own_cost(int cell) const {
 
 std::int64_t CellProblem::flip(std::span<const int> cells) {
   ++stamp_;
-  const std::int64_t before = energy_;
-  std::int64_t misfit = 0;
+  const std::int64_t before = energy_, misfit_before = misfit();
   for (const int c : cells) {
     keep_[c] ^= 1;
     energy_ += keep_[c] ? -volume_cost_[c] : volume_cost_[c];
     if (const int m = mirror_[c]; m >= 0) {
-      const std::int64_t cost = std::llround(kUnit * symmetry_ * std::min(volume_[c], volume_[m]));
+      const std::int64_t cost = std::llround(symmetry_ * std::min(volume_[c], volume_[m]));
       energy_ += keep_[c] != keep_[m] ? cost : -cost;
     }
     for (const Contact& contact : contacts_[c]) {
@@ -236,8 +231,8 @@ std::int64_t CellProblem::flip(std::span<const int> cells) {
       Class& ray = classes_[k];
       const int first = first_of(ray);
       if (first == ray.first) continue;
-      if (ray.first == ray.length) misfit -= ray.empty;
-      if (first == ray.length) misfit += ray.empty;
+      if (ray.first == ray.length) uncovered_ -= ray.empty;
+      if (first == ray.length) uncovered_ += ray.empty;
       // A cell is open to a ray as long as nothing is kept before it: up to and with the first kept one.
       const int was = std::min(ray.first + 1, ray.length), now = std::min(first + 1, ray.length);
       if (now > was) set_open(ray, was, now, 1);
@@ -249,11 +244,12 @@ std::int64_t CellProblem::flip(std::span<const int> cells) {
     for (const int g : classes_[k].groups) {
       if (group_mark_[g] == stamp_) continue;
       group_mark_[g] = stamp_;
-      misfit -= groups_[g].value;
-      misfit += groups_[g].value = value_of(groups_[g]);
+      Pay& value = groups_[g].value;
+      strokes_ -= value.stroke, jumps_ -= value.jump;
+      value = value_of(groups_[g]);
+      strokes_ += value.stroke, jumps_ += value.jump;
     }
-  energy_ += misfit;
-  misfit_ += misfit;
+  energy_ += misfit() - misfit_before;
   for (const int c : cells) touched_.push_back(c);
   for (const int c : touched_) {
     if (touch_mark_[c] == stamp_) continue;

@@ -7,14 +7,15 @@
 
 namespace carve {
 
-/// What makes one choice of cells better than another; in units of one grid pixel's side of drawn stroke.
+/// What makes one choice of cells better than another, in sides of drawn stroke of a grid of 128 voxels along the
+/// longest side. On other grids the costs are scaled so that the choice is the same.
 struct CellWeights {
   double unexplained = 1;  // a depth jump where no stroke is
   double colour = 0.5;     // a depth jump where only a colour boundary is
   double open = 0.5;       // an open stroke without a depth jump
   double area = 0.003;     // a voxel face of surface
   double volume = 0.0001;  // a dropped voxel
-  double buried = 0.0025;  // a dropped voxel, times the views that it lacks to be seen empty in two
+  double buried = 0.0045;  // a dropped voxel, times the views that it lacks to be seen empty in two
   double silhouette = 8;   // a pixel whose ray meets no voxel any more
   double agreement = 0.1;  // a pixel of a cell that two views show in different colours
   double symmetry = 0.01;  // a voxel that differs from its mirror image
@@ -48,9 +49,16 @@ class CellProblem {
   int cells() const { return static_cast<int>(keep_.size()); }
   std::span<const std::uint8_t> keep() const { return keep_; }
   std::int64_t energy() const { return energy_; }
-  std::int64_t misfit() const { return misfit_; }       // of it, what the drawings ask for: strokes and silhouettes
-  std::int64_t flip(std::span<const int> cells);        // toggles them; the change of energy
-  int mirror(int cell) const { return mirror_[cell]; }  // its mirror image; -1: none, or itself
+  std::int64_t misfit() const { return strokes_ + jumps_ + uncovered_; }  // of it, what the drawings ask for
+  std::int64_t strokes() const { return strokes_; }                       // of that: strokes without a depth jump
+  std::int64_t jumps() const { return jumps_; }                           // depth jumps away from strokes
+  std::int64_t flip(std::span<const int> cells);                          // toggles them; the change of energy
+  int mirror(int cell) const { return mirror_[cell]; }                    // its mirror image; -1: none, or itself
+  /// Calls use(other) for the cells that share a face with `cell`; -1: the outside.
+  template <class Use>
+  void each_neighbour(int cell, Use&& use) const {
+    for (const Contact& contact : contacts_[cell]) use(contact.other);
+  }
 
  private:
   struct Class {
@@ -61,9 +69,12 @@ class CellProblem {
     std::int64_t pixels;
     std::vector<int> groups;
   };
+  struct Pay {
+    std::int32_t stroke = 0, jump = 0;
+  };
   struct Group {
     int a, b, table;
-    std::int64_t value;
+    Pay value;
   };
   struct Contact {
     int other;  // -1: outside
@@ -75,13 +86,13 @@ class CellProblem {
   int first_of(const Class& c) const;
   std::int64_t own_cost(int cell) const;
   void set_open(const Class& c, int from, int to, int sign);
-  std::int64_t value_of(const Group& g) const;
+  Pay value_of(const Group& g) const;
 
   std::vector<std::uint8_t> keep_;
   std::vector<int> order_;
   std::vector<Class> classes_;
   std::vector<Group> groups_;
-  std::vector<std::int32_t> tables_;
+  std::vector<Pay> tables_;
   std::vector<std::vector<int>> classes_of_;  // per cell
   std::vector<std::vector<Contact>> contacts_;
   std::vector<std::int64_t> volume_cost_, volume_;
@@ -94,7 +105,7 @@ class CellProblem {
   std::vector<int> touched_, touch_mark_;
   std::vector<int> class_mark_, group_mark_;
   int stamp_ = 0;
-  std::int64_t energy_ = 0, misfit_ = 0;
+  std::int64_t energy_ = 0, strokes_ = 0, jumps_ = 0, uncovered_ = 0;
 };
 
 }  // namespace carve

@@ -244,6 +244,28 @@ std::int64_t drop_in_one_pass(CellProblem& problem) {
   return problem.cells() + static_cast<std::int64_t>(gains.size());
 }
 
+void restore_unexplained(CellProblem& problem) {
+  std::vector<std::uint8_t> seen(problem.cells(), 0);
+  for (int first = 0; first < problem.cells(); ++first) {
+    if (seen[first] || problem.keep()[first]) continue;
+    std::vector<int> part{first};
+    seen[first] = 1;
+    for (std::size_t k = 0; k < part.size(); ++k) {
+      const auto add = [&](int c) {
+        if (c < 0 || seen[c] || problem.keep()[c]) return;
+        seen[c] = 1;
+        part.push_back(c);
+      };
+      add(problem.mirror(part[k]));
+      problem.each_neighbour(part[k], add);
+    }
+    const std::int64_t strokes = problem.strokes(), jumps = problem.jumps();
+    problem.flip(part);
+    const std::int64_t explained = problem.strokes() - strokes, added = jumps - problem.jumps();
+    if (4 * added <= explained) problem.flip(part);
+  }
+}
+
 SearchEnd search_cells(CellProblem& problem, const Cells& cells, const Vec3i& size, std::span<const RegionMap> views,
                        const SearchLimit& limit) {
   return Search(problem, order_of(cells, size, views), static_cast<int>(views.size()), limit).run();

@@ -21,6 +21,10 @@ struct SearchEnd {
 /// there are two levels of depth. \return choices looked at
 std::int64_t drop_in_one_pass(CellProblem& problem);
 
+/// Restores each connected part of what is dropped, with its mirror image, that adds more than one depth jump elsewhere
+/// for four strokes that it explains: the rule by which a whole solid is accepted (StrokeScore::explains_more_than).
+void restore_unexplained(CellProblem& problem);
+
 /// Lowers the problem's energy from where it stands: descends over single cells and over the columns of cells behind
 /// each region, anneals \cite kirkpatrick_1983, descends again.
 SearchEnd search_cells(CellProblem& problem, const Cells& cells, const Vec3i& size, std::span<const RegionMap> views,

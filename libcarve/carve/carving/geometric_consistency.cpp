@@ -74,6 +74,7 @@ ConsistencyResult solver(const Input& in) {
     const bool fallen_back = other.energy() < problem.energy();
     out.ran = fallen_back ? Consistency::two_level : Consistency::solver;
     if (fallen_back) problem = std::move(other);
+    restore_unexplained(problem);
   });
 }
 
