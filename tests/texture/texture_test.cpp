@@ -287,6 +287,19 @@ TEST(BestView, UnseenPartsStayWithinTheColoursAroundThem) {
   }
 }
 
+TEST(BestView, UnseenPartsTakeFlatColoursNotMixtures) {
+  const Scene scene = carve::scene(box({1, 0.75, 0.5}), plain);
+  const TexturedMesh model = textured(scene, arm(TextureArm::best_view, Mirror::no));
+  const Raster<int> cover = covering(model);
+  int flat = 0, all = 0;
+  for (std::size_t i = 0; i < cover.pixels.size(); ++i) {
+    if (cover.pixels[i] < 0) continue;
+    ++all;
+    flat += std::ranges::any_of(kThreeViews, [&](View view) { return model.texture.pixels[i] == plain(view, 0, 0); });
+  }
+  EXPECT_GT(flat, 0.9 * all);
+}
+
 TEST(Level, MovesBothSidesOfAFaintSeamToMeetAndLeavesStrongOnesAlone) {
   for (const int difference : {20, 120}) {
     const auto painter = [&](View view, int, int) {

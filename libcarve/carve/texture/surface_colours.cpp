@@ -4,6 +4,9 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cstdint>
+#include <functional>
+#include <limits>
+#include <queue>
 #include <unordered_map>
 
 #include "carve/mesh/adjacency.h"
@@ -80,6 +83,8 @@ class SurfaceColours {
 
  private:
   Colour seen_at(int vertex) const;
+  void spread(const std::vector<int>& vertices, const std::vector<int>& index, const std::vector<char>& known,
+              Columns& colours) const;
   void find_seams(double largest, SeamGraph& graph) const;
   void add_to_corners(const SeamGraph& graph, int base);
 
@@ -127,34 +132,65 @@ void SurfaceColours::fill() {
     known[i] = std::ranges::any_of(around_[vertices[i]], [&](int t) { return painted(paints_[t]); });
     if (known[i]) right.row(i) = seen_at(vertices[i]).cast<double>().transpose();
   }
-  // The weak pull to the mean settles parts without known vertices, and nothing else shows it.
-  constexpr double kPull = 1e-9;
-  const Colour mean = drawings_.mean();
-  std::vector<Eigen::Triplet<double>> entries;
+  spread(vertices, index, known, right);
+  for (int i = 0; i < count; ++i) result_.colours.emplace_back(right.row(i).transpose().cast<float>());
+}
+
+// Unknown colours become those of the nearest known vertex along the surface; then rounds of means over neighbours that
+// differ little even out streaks and leave borders between flat colours sharp, as drawn.
+void SurfaceColours::spread(const std::vector<int>& vertices, const std::vector<int>& index,
+                            const std::vector<char>& known, Columns& colours) const {
+  constexpr int kRounds = 40;
+  constexpr double kSimilar = 24;  // RGB distance
+  const int count = static_cast<int>(vertices.size());
+  // Per vertex the next corners of the triangles around it; of a closed surface each neighbour once.
+  std::vector<int> first(count + 1), beside;
   for (int i = 0; i < count; ++i) {
-    if (known[i]) {
-      entries.emplace_back(i, i, 1);
-      continue;
-    }
-    right.row(i) += kPull * mean.cast<double>().transpose();
-    double degree = kPull;
+    first[i] = static_cast<int>(beside.size());
     for (const int t : around_[vertices[i]]) {
       const Triangle& corners = mesh_.triangles[t];
-      // Each edge of a closed surface is met twice around a vertex; once is enough.
       const int k = corners[0] == vertices[i] ? 0 : corners[1] == vertices[i] ? 1 : 2;
-      const int j = index[corners[(k + 1) % 3]];
-      degree += 1;
-      if (known[j])
-        right.row(i) += right.row(j);
-      else
-        entries.emplace_back(i, j, -1);
+      if (const int j = index[corners[(k + 1) % 3]]; j >= 0) beside.push_back(j);
     }
-    entries.emplace_back(i, i, degree);
   }
-  Matrix matrix(count, count);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  const Columns solution = solve(matrix, right);
-  for (int i = 0; i < count; ++i) result_.colours.emplace_back(solution.row(i).transpose().cast<float>());
+  first[count] = static_cast<int>(beside.size());
+
+  std::vector<double> distance(count, std::numeric_limits<double>::infinity());
+  std::vector<int> source(count, -1);
+  using Reached = std::pair<double, int>;
+  std::priority_queue<Reached, std::vector<Reached>, std::greater<>> open;
+  for (int i = 0; i < count; ++i)
+    if (known[i]) distance[i] = 0, source[i] = i, open.emplace(0.0, i);
+  while (!open.empty()) {
+    const auto [here, i] = open.top();
+    open.pop();
+    if (here > distance[i]) continue;
+    for (int e = first[i]; e < first[i + 1]; ++e) {
+      const int j = beside[e];
+      const double there = here + (mesh_.positions[vertices[i]] - mesh_.positions[vertices[j]]).norm();
+      if (there >= distance[j]) continue;
+      distance[j] = there, source[j] = source[i];
+      open.emplace(there, j);
+    }
+  }
+  const Eigen::RowVector3d mean = drawings_.mean().cast<double>().transpose();
+  for (int i = 0; i < count; ++i) colours.row(i) = source[i] < 0 ? mean : Eigen::RowVector3d(colours.row(source[i]));
+
+  Columns next = colours;
+  for (int round = 0; round < kRounds; ++round) {
+    for (int i = 0; i < count; ++i) {
+      if (known[i]) continue;
+      Eigen::RowVector3d sum = colours.row(i);
+      double weight = 1;
+      for (int e = first[i]; e < first[i + 1]; ++e) {
+        const double off = (colours.row(beside[e]) - colours.row(i)).squaredNorm() / (kSimilar * kSimilar);
+        const double w = 1 / (1 + off * off);
+        sum += w * colours.row(beside[e]), weight += w;
+      }
+      next.row(i) = sum / weight;
+    }
+    colours.swap(next);
+  }
 }
 
 void SurfaceColours::find_seams(double largest, SeamGraph& graph) const {
