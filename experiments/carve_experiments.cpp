@@ -76,11 +76,13 @@ int run_command(const Arguments& arguments) {
     options.seconds = spec.seconds;
     options.megabytes = spec.megabytes;
     const Progress end = run_all(arguments.results, spec.name, cells, options, [&](const Progress& p) {
-      std::cerr << spec.name << ": " << p.skipped + p.done + p.failed << "/" << p.total << " (" << p.failed
+      std::cerr << spec.name << ": " << p.skipped + p.done + p.absent + p.failed << "/" << p.total << " (" << p.failed
                 << " failed), " << clock_text(p.seconds_left) << " left  " << p.last << '\n';
     });
     std::cout << spec.name << ": " << end.done << " done, " << end.skipped << " were there, " << end.failed
-              << " failed\n";
+              << " failed";
+    if (end.absent > 0) std::cout << ", " << end.absent << " not installed";
+    std::cout << '\n';
     failed += end.failed;
     if (failed && options.fail_fast) break;
   }

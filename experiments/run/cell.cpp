@@ -14,6 +14,7 @@
 #include "eval/metrics.h"
 #include "eval/texture_scores.h"
 #include "models/inside.h"
+#include "run/external.h"
 #include "run/hash.h"
 #include "run/methods.h"
 #include "run/metrics.h"
@@ -117,12 +118,18 @@ void run_cell(const fs::path& results, const std::string& spec, const Cell& cell
   for (const auto& [view, picture] : input.pictures)
     input.drawings.emplace(view, understand_drawing(picture, input.options.pipeline.drawing));
   record_times({{"read", seconds_since(start)}}, record);
-  const MethodOutput output = method.run(input);
+  MethodOutput output;
+  try {
+    output = method.run(input);
+  } catch (const NotInstalled& absent) {
+    return store_record(results, cell, record_of(spec, cell, absent.what()));
+  }
   record.metrics["seconds"] = seconds_since(start);
   record.metrics["cpu_seconds"] = static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
   record_times(output.times, record);
 
   record.provenance = provenance();
+  record.provenance.insert(output.provenance.begin(), output.provenance.end());
   if (subject.model) {
     const std::string content = content_hash(subject);
     record.provenance[kReferenceKey] = content;

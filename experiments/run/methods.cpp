@@ -5,6 +5,7 @@
 #include <memory>
 #include <thread>
 
+#include "run/external_methods.h"
 #include "run/photo_methods.h"
 
 namespace carve::experiments {
@@ -38,6 +39,8 @@ constexpr Method kMethods[] = {
     {"drawings_and_photos", "Space Carving from what the pipeline carved", drawings_and_photos_arm, true},
     {"stereo", "dense stereo of photos, fusion, Poisson", stereo_arm, true},
     {"patches", "multi-view stereo by patches as PMVS does it, Poisson", patches_arm, true},
+    {"colmap", "sparse points of COLMAP, if it is installed; Poisson", colmap_arm, true},
+    {"pmvs2", "the points of a pmvs2 on the PATH; Poisson", pmvs2_arm, true},
     {"crash", "dies of a segmentation fault: to see that a sweep survives it", crash},
     {"hang", "never ends: to see the time limit at work", hang},
     {"hoard", "takes memory until there is none: to see the memory limit at work", hoard},

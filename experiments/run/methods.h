@@ -26,7 +26,8 @@ struct MethodOutput {
   Mesh mesh = {};
   TexturedMesh textured = {};  // the same with colours; without a texture if the method makes none
   std::vector<StageTime> times = {};
-  std::vector<Vec3> points = {};  // that the mesh was made from, if it was
+  std::vector<Vec3> points = {};                       // that the mesh was made from, if it was
+  std::map<std::string, std::string> provenance = {};  // of what other programs did
 };
 
 /// One way from drawings to a mesh. A new variant is one function and one line in the table.

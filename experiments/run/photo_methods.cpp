@@ -1,7 +1,5 @@
 #include "run/photo_methods.h"
 
-#include <chrono>
-
 #include "carve/core/error.h"
 #include "carve/photo/poisson.h"
 #include "carve/photo/silhouette_hull.h"
@@ -11,15 +9,6 @@ namespace carve::experiments {
 namespace {
 
 constexpr double kPadding = 3;  // % of the longest side that the box is larger than the object
-
-// Does a stage and notes its time.
-template <class Work>
-auto timed(MethodOutput& output, const char* stage, Work&& work) {
-  const auto start = std::chrono::steady_clock::now();
-  auto result = work();
-  output.times.push_back({stage, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
-  return result;
-}
 
 VoxelGrid region(const MethodInput& input) {
   return grid_over(input.photos.low, input.photos.high, input.options.pipeline.carve.grid, Fill::full);
@@ -54,6 +43,12 @@ PhotoInput take_photos(const Model& model, const RunOptions& options) {
   return input;
 }
 
+MethodOutput surface_through(MethodOutput output, const OrientedPoints& points, const MethodInput& input) {
+  output.mesh = timed(output, "poisson", [&] { return poisson_surface(points, region(input)); });
+  output.points = points.positions;
+  return output;
+}
+
 MethodOutput silhouettes_arm(const MethodInput& input) {
   MethodOutput output;
   mesh_grid(output, hull_of(output, region(input), input), input);
@@ -81,9 +76,7 @@ MethodOutput stereo_arm(const MethodInput& input) {
   const StereoOptions& options = input.options.stereo;
   const std::vector<DepthMap> maps = timed(output, "stereo", [&] { return depth_maps(photos, low, high, options); });
   const OrientedPoints points = timed(output, "fusion", [&] { return fuse(maps, low, high, options); });
-  output.mesh = timed(output, "poisson", [&] { return poisson_surface(points, region(input)); });
-  output.points = points.positions;
-  return output;
+  return surface_through(std::move(output), points, input);
 }
 
 MethodOutput patches_arm(const MethodInput& input) {
@@ -91,9 +84,7 @@ MethodOutput patches_arm(const MethodInput& input) {
   const auto& [photos, low, high] = input.photos;
   const OrientedPoints points =
       timed(output, "patches", [&] { return patches(photos, low, high, input.options.patches); });
-  output.mesh = timed(output, "poisson", [&] { return poisson_surface(points, region(input)); });
-  output.points = points.positions;
-  return output;
+  return surface_through(std::move(output), points, input);
 }
 
 }  // namespace carve::experiments

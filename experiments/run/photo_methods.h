@@ -1,4 +1,6 @@
 #pragma once
+#include <chrono>
+
 #include "run/methods.h"
 
 namespace carve::experiments {
@@ -17,6 +19,18 @@ MethodOutput drawings_and_photos_arm(const MethodInput& input);
 MethodOutput stereo_arm(const MethodInput& input);
 /// Patches as PMVS makes them, Poisson.
 MethodOutput patches_arm(const MethodInput& input);
+
+/// The closed surface through points, both of the output.
+MethodOutput surface_through(MethodOutput output, const OrientedPoints& points, const MethodInput& input);
+
+/// Does a stage and notes its time.
+template <class Work>
+auto timed(MethodOutput& output, const char* stage, Work&& work) {
+  const auto start = std::chrono::steady_clock::now();
+  auto result = work();
+  output.times.push_back({stage, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
+  return result;
+}
 
 /// The photos that a run's options ask for, with the cameras as calibration has them, and the box.
 PhotoInput take_photos(const Model& model, const RunOptions& options);

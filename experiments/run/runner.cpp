@@ -1,10 +1,8 @@
 #include "run/runner.h"
 
-#include <sys/prctl.h>
 #include <sys/wait.h>
 
 #include <boost/process.hpp>
-#include <boost/process/extend.hpp>
 #include <chrono>
 #include <csignal>
 #include <cstring>
@@ -13,6 +11,8 @@
 
 #include "carve/core/error.h"
 #include "carve/core/file.h"
+#include "run/die_with_parent.h"
+#include "run/external.h"
 
 namespace carve::experiments {
 namespace bp = boost::process;
@@ -21,14 +21,6 @@ using Clock = std::chrono::steady_clock;
 namespace {
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-// The kernel kills the run when this process dies, however it dies.
-struct DieWithParent : bp::extend::handler {
-  template <class Executor>
-  void on_exec_setup(Executor&) const {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-  }
-};
 
 struct Running {
   Cell cell;
@@ -97,11 +89,12 @@ class Runner {
   }
 
   void end(Running& run, std::size_t to_do) {
-    const std::string why = outcome(run);
-    if (!why.empty()) store_record(results_, run.cell, record_of(spec_, run.cell, why));
+    const bool absent = !run.timed_out && left_out(results_, run.cell);
+    const std::string why = absent ? "not installed" : outcome(run);
+    if (!why.empty() && !absent) store_record(results_, run.cell, record_of(spec_, run.cell, why));
     --progress_.running;
-    ++(why.empty() ? progress_.done : progress_.failed);
-    const double ended = progress_.done + progress_.failed;
+    ++(why.empty() ? progress_.done : absent ? progress_.absent : progress_.failed);
+    const double ended = progress_.done + progress_.absent + progress_.failed;
     progress_.seconds_left = seconds_since(begin_) / ended * (static_cast<double>(to_do) - ended);
     progress_.last = run.cell.path.string() + ": " + (why.empty() ? "done" : why);
     tell_(progress_);
@@ -138,15 +131,29 @@ Progress run_all(const fs::path& results, const std::string& spec, const std::ve
   return Runner(results, spec, options, tell).run(cells);
 }
 
-std::optional<Record> finished(const fs::path& results, const Cell& cell) {
+namespace {
+
+std::optional<Record> own_record(const fs::path& results, const Cell& cell) {
   const fs::path file = results / cell.path / kRecordFile;
   if (!fs::exists(file)) return std::nullopt;
   try {
     Record record = record_from_json(read_file(file), file.string());
-    if (record.id == cell.id && record.done()) return record;
+    if (record.id == cell.id) return record;
   } catch (const IoError&) {  // a record that cannot be read is none: the run is done again
   }
   return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Record> finished(const fs::path& results, const Cell& cell) {
+  std::optional<Record> record = own_record(results, cell);
+  return record && record->done() ? record : std::nullopt;
+}
+
+bool left_out(const fs::path& results, const Cell& cell) {
+  const std::optional<Record> record = own_record(results, cell);
+  return record && record->status.starts_with(kNotInstalled);
 }
 
 void store_record(const fs::path& results, const Cell& cell, const Record& record) {

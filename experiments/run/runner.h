@@ -15,6 +15,7 @@ struct RunnerOptions {
 
 struct Progress {
   int total = 0, done = 0, skipped = 0, failed = 0, running = 0;
+  int absent = 0;           // their programs are not installed
   double seconds_left = 0;  // estimated from the runs done so far
   std::string last;         // path and outcome of the run that just ended
 };
@@ -28,6 +29,8 @@ Progress run_all(const std::filesystem::path& results, const std::string& spec, 
 
 /// The record in a cell's folder, if it is of this very run (same id) and has a result.
 std::optional<Record> finished(const std::filesystem::path& results, const Cell& cell);
+/// The run said that a program it needs is not installed (run/external.h).
+bool left_out(const std::filesystem::path& results, const Cell& cell);
 void store_record(const std::filesystem::path& results, const Cell& cell, const Record& record);
 /// A record with a cell's parameters and nothing measured yet.
 Record record_of(const std::string& spec, const Cell& cell, const std::string& status);

@@ -17,6 +17,7 @@ std::vector<Field> fields(RunOptions& options) {
   add_fields(all, "space_carving", options.space_carving);
   add_fields(all, "stereo", options.stereo);
   add_fields(all, "patches", options.patches);
+  add_fields(all, "external", options.external);
   return all;
 }
 

@@ -12,6 +12,19 @@
 
 namespace carve::experiments {
 
+/// Of methods that other programs do.
+struct ExternalOptions {
+  bool masks = true;
+  double seconds = 600;
+  double angle = 30;  // degrees
+};
+template <class Visitor>
+void visit_fields(ExternalOptions& o, Visitor&& field) {
+  field("masks", o.masks, "the program gets the masks");
+  field("seconds", o.seconds, 0.1, 1e6, "a program that runs longer is stopped");
+  field("angle", o.angle, 0.1, 180.0, "largest angle in degrees between two photos whose features are matched");
+}
+
 /// Every option that a spec may set: the pipeline's as in carve build, "synthesize.*", "degrade.*", "evaluate.*" and
 /// those of photos.
 struct RunOptions {
@@ -26,6 +39,7 @@ struct RunOptions {
   SpaceCarvingOptions space_carving;
   StereoOptions stereo;
   PatchOptions patches;
+  ExternalOptions external;
 };
 
 std::vector<Field> fields(RunOptions& options);

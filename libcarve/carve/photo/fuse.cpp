@@ -10,6 +10,7 @@
 
 #include "carve/core/options.h"
 #include "carve/core/parallel.h"
+#include "carve/photo/point_files.h"
 #include "carve/photo/stereo.h"
 
 namespace carve {
@@ -76,13 +77,17 @@ OrientedPoints fuse(std::span<const DepthMap> maps, const Vec3& low, const Vec3&
       sum.point += p.point, sum.to_camera += p.to_camera, ++sum.count;
     }
 
-  std::vector<PointAndNormal> all;
-  std::vector<Vec3> outwards;
+  std::vector<Vec3> positions, towards;
   for (const auto& [_, sum] : cubes) {
-    const Vec3 p = sum.point / sum.count;
-    all.push_back({Kernel::Point_3(p.x(), p.y(), p.z()), CGAL::NULL_VECTOR});
-    outwards.push_back(sum.to_camera);
+    positions.push_back(sum.point / sum.count);
+    towards.push_back(sum.to_camera);
   }
+  return with_normals(positions, towards);
+}
+
+OrientedPoints with_normals(const std::vector<Vec3>& positions, const std::vector<Vec3>& towards) {
+  std::vector<PointAndNormal> all;
+  for (const Vec3& p : positions) all.push_back({Kernel::Point_3(p.x(), p.y(), p.z()), CGAL::NULL_VECTOR});
   OrientedPoints result;
   if (all.size() <= kNeighbours) return result;
   CGAL::pca_estimate_normals<CGAL::Sequential_tag>(
@@ -93,7 +98,7 @@ OrientedPoints fuse(std::span<const DepthMap> maps, const Vec3& low, const Vec3&
     const auto& [p, n] = all[i];
     const Vec3 normal(n.x(), n.y(), n.z());
     result.positions.emplace_back(p.x(), p.y(), p.z());
-    result.normals.push_back(normal.dot(outwards[i]) < 0 ? Vec3(-normal) : normal);
+    result.normals.push_back(normal.dot(towards[i]) < 0 ? Vec3(-normal) : normal);
   }
   return result;
 }

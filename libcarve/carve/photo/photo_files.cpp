@@ -81,11 +81,13 @@ void write_pmvs(const fs::path& folder, std::span<const Photo> photos, bool mask
   });
 }
 
+std::string colmap_name(int index) { return numbered(index, ".png"); }
+
 void write_colmap(const fs::path& folder, std::span<const Photo> photos) {
   check_any(photos);
   for (const char* part : {"images", "masks", "sparse"}) make_folder(folder / part);
   for (int i = 0; i < static_cast<int>(photos.size()); ++i) {
-    write_png(folder / "images" / numbered(i, ".png"), photos[i].picture);
+    write_png(folder / "images" / colmap_name(i), photos[i].picture);
     write_png(folder / "masks" / numbered(i, ".png.png"), picture_of(photos[i].mask));
   }
   write_text(folder / "sparse" / "cameras.txt", [&](std::ostream& out) {
@@ -102,8 +104,8 @@ void write_colmap(const fs::path& folder, std::span<const Photo> photos) {
       const Camera& c = photos[i].camera;
       const Eigen::Quaterniond q(c.rotation);
       out << i + 1 << ' ' << q.w() << ' ' << q.x() << ' ' << q.y() << ' ' << q.z() << ' ' << c.translation.x() << ' '
-          << c.translation.y() << ' ' << c.translation.z() << ' ' << i + 1 << ' '
-          << numbered(static_cast<int>(i), ".png") << "\n\n";
+          << c.translation.y() << ' ' << c.translation.z() << ' ' << i + 1 << ' ' << colmap_name(static_cast<int>(i))
+          << "\n\n";
     }
   });
   write_text(folder / "sparse" / "points3D.txt", [](std::ostream& out) { out << "# no points yet\n"; });

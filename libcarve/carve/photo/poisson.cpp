@@ -6,7 +6,9 @@
 #include <CGAL/property_map.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 
 #include "carve/surface/marching_cubes.h"
 
@@ -17,16 +19,31 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
 using PointAndNormal = std::pair<Point, Kernel::Vector_3>;
 
-constexpr std::size_t kFewestPoints = 10;
-constexpr double kOffCentre = 0.02;  // voxels, so that no triangle degenerates
+constexpr std::size_t kFewestPoints = 1100;  // of fewer CGAL makes noise
+constexpr double kThin = 0.25;               // voxels: of points in one such cube the first is enough
+constexpr double kOffCentre = 0.02;          // voxels, so that no triangle degenerates
 
-// The function at every voxel's centre, x fastest.
-std::vector<float> sampled(const OrientedPoints& points, const VoxelGrid& region, const Monitor& monitor) {
+// Those of the region's box; points that nearly coincide would break CGAL's triangulation.
+std::vector<PointAndNormal> thinned(const OrientedPoints& points, const VoxelGrid& region) {
+  const Vec3 size = region.size().cast<double>();
+  std::set<std::array<int, 3>> taken;
   std::vector<PointAndNormal> all;
   for (std::size_t i = 0; i < points.positions.size(); ++i) {
     const Vec3 &p = points.positions[i], &n = points.normals[i];
-    all.emplace_back(Point(p.x(), p.y(), p.z()), Kernel::Vector_3(n.x(), n.y(), n.z()));
+    const Vec3 at = (p - region.low()) / region.spacing();
+    if (!((at.array() >= 0).all() && (at.array() <= size.array()).all())) continue;
+    const Vec3i cube = (at / kThin).cast<int>();
+    if (taken.insert({cube.x(), cube.y(), cube.z()}).second)
+      all.emplace_back(Point(p.x(), p.y(), p.z()), Kernel::Vector_3(n.x(), n.y(), n.z()));
   }
+  return all;
+}
+
+// The function at every voxel's centre, x fastest.
+std::vector<float> sampled(const OrientedPoints& points, const VoxelGrid& region, const Monitor& monitor) {
+  std::vector<PointAndNormal> all = thinned(points, region);
+  if (all.size() < kFewestPoints)
+    throw NoResult("Poisson: " + std::to_string(all.size()) + " points are too few for a surface");
   // CGAL shuffles points by a generator that all its users share.
   CGAL::get_default_random() = CGAL::Random(0);
   CGAL::Poisson_reconstruction_function<Kernel> function(all.begin(), all.end(),
@@ -71,8 +88,6 @@ EdgeCrossings zeros(const std::vector<float>& values, const Vec3i& size, int axi
 }  // namespace
 
 Mesh poisson_surface(const OrientedPoints& points, const VoxelGrid& region, const Monitor& monitor) {
-  if (points.positions.size() < kFewestPoints)
-    throw NoResult("Poisson: " + std::to_string(points.positions.size()) + " points are too few for a surface");
   const std::vector<float> values = sampled(points, region, monitor);
   VoxelGrid grid(region.size(), region.low(), region.spacing());
   const Vec3i size = grid.size();

@@ -1,0 +1,12 @@
+#pragma once
+#include "run/methods.h"
+
+namespace carve::experiments {
+
+/// Methods that another program does, if it is on the PATH; what ran is in the record as "external".
+/// COLMAP: features, matches of photos within external.angle, points at the known poses; planes' normals, Poisson.
+MethodOutput colmap_arm(const MethodInput& input);
+/// PMVS2 on the folder that write_pmvs makes; Poisson.
+MethodOutput pmvs2_arm(const MethodInput& input);
+
+}  // namespace carve::experiments
