@@ -5,6 +5,7 @@
 #include "carve/core/error.h"
 #include "carve/hull/polyhedral_hull.h"
 #include "carve/mesh/topology.h"
+#include "hull/agreement.h"
 #include "shapes.h"
 
 namespace carve {
@@ -100,6 +101,87 @@ TEST_P(RandomContoursTest, TheBackViewCutsOffWhatItDoesNotShow) {
   const Silhouettes s = pixel_contours(views_of_masks(masks)), expected = pixel_contours(views_of_masks(combined));
   ASSERT_EQ(s.along.size(), 3u);
   for (int k = 0; k < 3; ++k) EXPECT_EQ(s.along[k].loops, expected.along[k].loops);
+}
+
+double circle_error(const Silhouettes& s, const Silhouette& one) {
+  double most = 0;
+  for (const LatticeLoop& loop : one.loops)
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const auto at = [&](const LatticePoint& p) {
+        Vec3 place = s.origin;
+        for (int k = 0; k < 2; ++k) place[(one.axis + 1 + k) % 3] += s.unit[(one.axis + 1 + k) % 3] * p[k];
+        place -= Vec3(0, 0.5, 0);
+        place[one.axis] = 0;
+        return place;
+      };
+      const Vec3 p = at(loop[i]), q = at(loop[(i + 1) % loop.size()]);
+      most = std::max({most, std::abs(p.norm() - 0.5), std::abs(((p + q) / 2).norm() - 0.5)});
+    }
+  return most;
+}
+
+TEST(SubpixelContoursTest, ACircleIsTruerThanItsPixels) {
+  for (const int pixels : {32, 64, 128, 256}) {
+    const ViewSet views = aligned(ball(), kThreeViews, {.pixels = pixels});
+    const Silhouettes hard = pixel_contours(views), soft = pixel_contours(views, {.subpixel = true});
+    for (int k = 0; k < 3; ++k) {
+      ASSERT_EQ(soft.along[k].loops.size(), 1u);
+      EXPECT_LT(circle_error(soft, soft.along[k]), 0.2 / pixels);
+      EXPECT_LT(circle_error(soft, soft.along[k]), 0.25 * circle_error(hard, hard.along[k]));
+    }
+    // All of the three cylinders' common part lies half a unit from the centre, so its area is six times its volume.
+    const double volume = ball().hull_volume;
+    const Topology t = topology(polyhedral_hull(soft).mesh), stairs = topology(polyhedral_hull(hard).mesh);
+    EXPECT_NEAR(t.volume / volume, 1, 10. / pixels / pixels);
+    EXPECT_NEAR(t.area / (6 * volume), 1, 0.02);
+    EXPECT_GT(stairs.area / (6 * volume), 1.1);
+  }
+}
+
+TEST_P(RandomContoursTest, SubpixelLoopsReachTheBoxAndTheMethodsAgreeOnThem) {
+  // Blurred noise: coverages of all values.
+  const Vec3i size(9, 8, 7);
+  std::map<View, Drawing> drawings;
+  for (const auto& [view, mask] : random_masks(size, GetParam())) {
+    Drawing drawing = drawing_of(mask);
+    const Mask sharp = drawing.coverage;
+    for (int y = 0; y < sharp.height; ++y)
+      for (int x = 0; x < sharp.width; ++x) {
+        int sum = 0;
+        for (int k = 0; k < 9; ++k)
+          if (sharp.contains(x + k % 3 - 1, y + k / 3 - 1)) sum += sharp(x + k % 3 - 1, y + k / 3 - 1);
+        drawing.coverage(x, y) = static_cast<std::uint8_t>(std::max<int>(sum / 9, sharp(x, y) ? 128 : 0));
+      }
+    drawings.emplace(view, std::move(drawing));
+  }
+  const ViewSet views = align(std::move(drawings));
+  const Silhouettes s = pixel_contours(views, {.subpixel = true});
+  for (int axis = 0; axis < 3; ++axis) {
+    std::int32_t size_seen = 0;
+    for (const Silhouette& one : s.along)
+      for (int k = 0; k < 2; ++k) {
+        if ((one.axis + 1 + k) % 3 != axis) continue;
+        std::int32_t low = kLattice, high = 0;
+        for (const LatticeLoop& loop : one.loops)
+          for (const LatticePoint& p : loop) low = std::min(low, p[k]), high = std::max(high, p[k]);
+        EXPECT_EQ(low, 0);
+        EXPECT_EQ(high, size_seen == 0 ? high : size_seen);
+        size_seen = high;
+      }
+  }
+  for (const Silhouette& one : s.along) EXPECT_GT(area(one), 0);
+  EXPECT_EQ(compare_methods(s).differences, "");
+}
+
+TEST(SubpixelContoursTest, OppositeViewsShowTheirCommonPart) {
+  const ViewSet views = aligned(ball(), kThreeViews, {.pixels = 64});
+  std::map<View, Drawing> drawings;
+  for (const AlignedView& view : views.views) drawings.emplace(view.view, view.drawing);
+  const Silhouettes three = pixel_contours(views, {.subpixel = true});
+  for (const auto& [view, opposite] : {std::pair(View::front, View::back), std::pair(View::side, View::left)})
+    drawings.emplace(opposite, mirrored(drawings.at(view)));
+  const Silhouettes five = pixel_contours(align(std::move(drawings)), {.subpixel = true});
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(three.along[k].loops, five.along[k].loops);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomContoursTest, testing::Range(0u, 12u));

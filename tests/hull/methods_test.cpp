@@ -32,9 +32,12 @@ TEST(MethodsOnTwoViewsTest, Agree) {
 
 TEST(MethodsOnShapesTest, Agree) {
   for (const Shape& shape : {torus(), stairs(3)}) {
-    const Agreement agreement = compare_methods(pixel_contours(aligned(shape, kThreeViews, {.pixels = 24})));
-    EXPECT_EQ(agreement.differences, "") << shape.name;
-    EXPECT_FALSE(agreement.empty) << shape.name;
+    const ViewSet views = aligned(shape, kThreeViews, {.pixels = 24});
+    for (const bool subpixel : {false, true}) {
+      const Agreement agreement = compare_methods(pixel_contours(views, {.subpixel = subpixel}));
+      EXPECT_EQ(agreement.differences, "") << shape.name;
+      EXPECT_FALSE(agreement.empty) << shape.name;
+    }
   }
 }
 

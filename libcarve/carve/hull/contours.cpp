@@ -8,6 +8,7 @@
 #include "carve/core/options.h"
 #include "carve/hull/simplify.h"
 #include "carve/hull/trace.h"
+#include "carve/image/outline_loops.h"
 
 namespace carve {
 namespace {
@@ -106,7 +107,10 @@ std::vector<int> find_intervals(const std::vector<std::int32_t>& borders, const 
   return found;
 }
 
-Silhouette silhouette(const std::vector<Pixels>& shown, int axis) {
+Silhouette hard_silhouette(std::span<const AlignedView* const> views_along, const ViewSet& views, int axis,
+                           const Vec3i& size) {
+  std::vector<Pixels> shown;
+  for (const AlignedView* view : views_along) shown.push_back(in_lattice(*view, views, axis, size));
   std::vector<std::int32_t> borders[2] = {shown[0].breaks[0], shown[0].breaks[1]};
   for (std::size_t v = 1; v < shown.size(); ++v)
     for (int k = 0; k < 2; ++k) borders[k] = merged(borders[k], shown[v].breaks[k]);
@@ -117,7 +121,63 @@ Silhouette silhouette(const std::vector<Pixels>& shown, int axis) {
     for (int y = 0; y < mask.height; ++y)
       for (int x = 0; x < mask.width; ++x) mask(x, y) &= i[x] >= 0 && j[y] >= 0 && pixels.inside(i[x], j[y]);
   }
-  return {axis, shown[0].view->view, hull::trace(mask, borders[0], borders[1])};
+  return {axis, views_along[0]->view, hull::trace(mask, borders[0], borders[1])};
+}
+
+/// The lesser coverage of opposite views, in the pixels of the first.
+Mask common_coverage(std::span<const AlignedView* const> shown) {
+  const AlignedView& first = *shown[0];
+  Mask all = first.drawing.coverage;
+  for (const AlignedView* other : shown.subspan(1)) {
+    const Mask& coverage = other->drawing.coverage;
+    const auto at = [&](int x, int y) { return coverage.contains(x, y) ? static_cast<double>(coverage(x, y)) : 0.; };
+    for (int y = 0; y < all.height; ++y)
+      for (int x = 0; x < all.width; ++x) {
+        const double column = other->column((x + 0.5 - first.column0) / first.column_per_unit) - 0.5;
+        const double row = other->row((y + 0.5 - first.row0) / first.row_per_unit) - 0.5;
+        const int i = static_cast<int>(std::floor(column)), j = static_cast<int>(std::floor(row));
+        const double value = std::lerp(std::lerp(at(i, j), at(i + 1, j), column - i),
+                                       std::lerp(at(i, j + 1), at(i + 1, j + 1), column - i), row - j);
+        all(x, y) = std::min(all(x, y), static_cast<std::uint8_t>(std::lround(value)));
+      }
+  }
+  return all;
+}
+
+/// The outlines as polygons. Each vertex lies on a line between two pixels' centres and at least one lattice unit from
+/// both, so rounding keeps what the cells between the centres keep: no loops meet.
+Silhouette soft_silhouette(std::span<const AlignedView* const> shown, const ViewSet& views, int axis,
+                           const Vec3i& size) {
+  const AlignedView& view = *shown[0];
+  const int axes[2] = {(axis + 1) % 3, (axis + 2) % 3};
+  const bool transposed = !along_columns(view.view, axes[0]);
+  const bool mirrored = (view.column_per_unit < 0) != (view.row_per_unit > 0);
+  const auto in_lattice = [&](double pixel, int k) {
+    const auto [offset, slope] = pixel_line(view, axes[k]);
+    const double x = (pixel - offset) / slope - views.low()[axes[k]];
+    return static_cast<std::int32_t>(std::lround(size[axes[k]] * x / views.size[axes[k]]));
+  };
+  Silhouette result{axis, view.view, {}};
+  for (const std::vector<OutlineCrossing>& crossings : outline_loops(common_coverage(shown))) {
+    LatticeLoop& loop = result.loops.emplace_back();
+    for (const OutlineCrossing& c : crossings) {
+      LatticePoint point;
+      for (int k = 0; k < 2; ++k) {
+        const bool columns = (k == 0) != transposed;
+        const int pixel = columns ? c.x : c.y;
+        point[k] = in_lattice(columns ? c.place.x() : c.place.y(), k);
+        if (columns != c.along_row) continue;
+        const auto [low, high] = std::minmax({in_lattice(pixel + 0.5, k), in_lattice(pixel + 1.5, k)});
+        point[k] = std::clamp(point[k], low + 1, std::max(low + 1, high - 1));
+        // The outermost places become the box's: bounds are told to less than a lattice unit.
+        if (std::abs(point[k]) <= 1) point[k] = 0;
+        if (std::abs(point[k] - size[axes[k]]) <= 1) point[k] = size[axes[k]];
+      }
+      loop.push_back(point);
+    }
+    if (transposed != mirrored) std::reverse(loop.begin(), loop.end());
+  }
+  return result;
 }
 
 }  // namespace
@@ -130,15 +190,16 @@ Silhouettes pixel_contours(const ViewSet& views, const ContourOptions& options) 
   all.origin = views.low();
   all.unit = views.size.array() / size.cast<double>().array();
   for (int axis = 0; axis < 3; ++axis) {
-    std::vector<Pixels> shown;
+    std::vector<const AlignedView*> shown;
     for (const AlignedView& view : views.views)
-      if (frame(view.view).toward.axis == axis) shown.push_back(in_lattice(view, views, axis, size));
+      if (frame(view.view).toward.axis == axis) shown.push_back(&view);
     if (shown.empty()) continue;
-    Silhouette one = silhouette(shown, axis);
+    Silhouette one =
+        options.subpixel ? soft_silhouette(shown, views, axis, size) : hard_silhouette(shown, views, axis, size);
     std::array<double, 2> pixel;  // in lattice units
     for (int k = 0; k < 2; ++k) {
       const int along = (axis + 1 + k) % 3;
-      pixel[k] = 1 / std::abs(pixel_line(*shown[0].view, along).second * all.unit[along]);
+      pixel[k] = 1 / std::abs(pixel_line(*shown[0], along).second * all.unit[along]);
     }
     one.loops = hull::simplified(one.loops, options.tolerance, pixel);
     all.along.push_back(std::move(one));

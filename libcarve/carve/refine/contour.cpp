@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
 #include "carve/image/outline.h"
+#include "carve/image/outline_loops.h"
 
 namespace carve::refining {
 namespace {
@@ -13,36 +13,6 @@ namespace {
 constexpr int kCells = 512;        // along the drawing's longer side
 constexpr double kStraight = 0.5;  // pixels off a line that still count as straight
 constexpr double kTooLong = 1.5;   // times the chord that a circle of the object's size has within kStraight
-
-/// Crossings of the lattice of pixel centres: along the row from (x, y) to (x + 1, y), or along the column down.
-struct Crossing {
-  int x, y;
-  bool along_row;
-  auto operator<=>(const Crossing&) const = default;  // NOLINT(modernize-use-nullptr): clang-tidy 14 sees its zero
-};
-
-/// The next crossing along the outline, the object to the left as pictures are seen (y down).
-using Links = std::map<Crossing, Crossing>;
-
-Links link_cells(const Mask& coverage) {
-  const auto in = [&](int x, int y) { return coverage.contains(x, y) && coverage(x, y) >= 128; };
-  Links next;
-  for (int y = -1; y < coverage.height; ++y)
-    for (int x = -1; x < coverage.width; ++x) {
-      // Corners and edges counter-clockwise as seen: edge k lies between corner k and k + 1.
-      const bool corner[4] = {in(x, y), in(x, y + 1), in(x + 1, y + 1), in(x + 1, y)};
-      if (corner[0] == corner[1] && corner[1] == corner[2] && corner[2] == corner[3]) continue;
-      const Crossing edge[4] = {{x, y, false}, {x, y + 1, true}, {x + 1, y, false}, {x, y, true}};
-      for (int k = 0; k < 4; ++k) {
-        // Each run of inside corners is cut off on its own, as the surface does it on faces.
-        if (corner[k] || !corner[(k + 1) % 4]) continue;
-        int end = (k + 1) % 4;
-        while (corner[(end + 1) % 4]) end = (end + 1) % 4;
-        next.emplace(edge[end], edge[k]);
-      }
-    }
-  return next;
-}
 
 double off_line(const Vec2& p, const Vec2& a, const Vec2& b) {
   const Vec2 along = b - a;
@@ -63,27 +33,14 @@ Contour::Contour(const AlignedView& view)
 }
 
 void Contour::trace() {
-  const Mask& coverage = view_.drawing.coverage;
-  const Outline outline(coverage);
-  const auto place = [&](const Crossing& c) {
-    const auto inside = [&](int x, int y) { return coverage.contains(x, y) && coverage(x, y) >= 128; };
-    double column = c.x + 0.5, row = c.y + 0.5;
-    const bool first = inside(c.x, c.y);
-    if (c.along_row)
-      column = outline.leave_along_row(first ? column : column + 1, first ? column + 1 : column, row);
-    else
-      row = outline.leave_along_column(first ? row : row + 1, first ? row + 1 : row, column);
-    return Vec2((column - view_.column0) / view_.column_per_unit, (row - view_.row0) / view_.row_per_unit);
+  const auto in_object_units = [&](const OutlineCrossing& c) {
+    return Vec2((c.place.x() - view_.column0) / view_.column_per_unit, (c.place.y() - view_.row0) / view_.row_per_unit);
   };
-  Links next = link_cells(coverage);
-  while (!next.empty()) {
+  for (const std::vector<OutlineCrossing>& loop : outline_loops(view_.drawing.coverage)) {
     const int first = pieces();
-    for (auto at = next.begin(); at != next.end();) {
-      const Vec2 from = place(at->first), to = place(at->second);
-      const Crossing following = at->second;
-      next.erase(at);
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const Vec2 from = in_object_units(loop[i]), to = in_object_units(loop[(i + 1) % loop.size()]);
       if (from != to) from_.push_back(from), to_.push_back(to);
-      at = next.find(following);
     }
     straight_.resize(from_.size());
     if (pieces() - first > 2) find_straight(first, pieces());
