@@ -12,12 +12,16 @@
 #include "carve/mesh/neighbours.h"
 #include "carve/texture/atlas.h"
 #include "carve/texture/chart_uvs.h"
+#include "carve/texture/unfold.h"
 
 namespace carve {
 namespace {
 
-constexpr double kSteepest = 75 * std::numbers::pi / 180;  // between a triangle's normal and its chart's
-constexpr double kCompactness = 0.002;                     // object units that a circle's roundness is worth
+constexpr double kDegree = std::numbers::pi / 180;
+// Half the angle of the cone that holds a chart's normals: of charts that may be unfolded, and of those that project.
+constexpr double kWide = 120 * kDegree, kSteepest = 75 * kDegree;
+constexpr double kDistorted = 5;        // symmetric Dirichlet energy above which a wide chart is cut up again
+constexpr double kCompactness = 0.002;  // object units that a circle's roundness is worth
 
 // What is known of a set of triangles without looking at them again.
 struct Patch {
@@ -62,7 +66,9 @@ Patch joined(const Patch& a, const Patch& b, double shared) {
 
 class Clustering {
  public:
-  Clustering(const Mesh& mesh, const AtlasOptions& options) : mesh_(mesh), options_(options) {
+  // Joins triangles of one group; those of a negative group stay alone.
+  Clustering(const Mesh& mesh, const AtlasOptions& options, double widest, const std::vector<int>& group)
+      : mesh_(mesh), options_(options), widest_(widest) {
     const std::vector<Vec3> normals = triangle_normals(mesh);
     const auto neighbours = triangle_neighbours(mesh);
     const int count = static_cast<int>(mesh.triangles.size());
@@ -71,7 +77,8 @@ class Clustering {
       parent_[t] = t;
       add_triangle(t, normals[t]);
       for (int k = 0; k < 3; ++k)
-        if (neighbours[t][k] >= 0) beside_[t][neighbours[t][k]] += edge(t, k);
+        if (const int other = neighbours[t][k]; other >= 0 && group[t] >= 0 && group[t] == group[other])
+          beside_[t][other] += edge(t, k);
     }
     for (int t = 0; t < count; ++t)
       for (const auto& [other, shared] : beside_[t])
@@ -79,9 +86,9 @@ class Clustering {
   }
 
   // Per triangle its cluster's first triangle; the plane's normal of each cluster in `normals`.
-  std::vector<int> run(std::vector<Vec3>& normals) {
+  std::vector<int> run(int most, std::vector<Vec3>& normals) {
     int left = static_cast<int>(patches_.size());
-    while (left > options_.max_clusters && !offers_.empty()) {
+    while (left > most && !offers_.empty()) {
       const Offer offer = offers_.top();
       offers_.pop();
       if (offer.version_a != version_[offer.a] || offer.version_b != version_[offer.b]) continue;
@@ -130,7 +137,7 @@ class Clustering {
 
   void offer(int a, int b, double shared) {
     const Patch both = joined(patches_[a], patches_[b], shared);
-    if (both.angle > kSteepest) return;
+    if (both.angle > widest_) return;
     const double distance = both.distance();
     if (distance > options_.max_distortion) return;
     const double roundness = both.perimeter * both.perimeter / (4 * std::numbers::pi * both.area);
@@ -161,21 +168,15 @@ class Clustering {
 
   const Mesh& mesh_;
   const AtlasOptions& options_;
+  double widest_;
   std::vector<Patch> patches_;
   std::vector<std::map<int, double>> beside_;  // neighbours, by the length of the border with them
   std::vector<int> version_, parent_;
   std::priority_queue<Offer> offers_;
 };
 
-}  // namespace
-
-Charts cluster_charts(const Mesh& mesh, const ViewSet& views, const AtlasOptions& options) {
-  check("atlas", options);
-  double density = 0;  // a texel is a pixel
-  for (const AlignedView& view : views.views)
-    density = std::max({density, std::abs(view.column_per_unit), std::abs(view.row_per_unit)});
-  std::vector<Vec3> normals;
-  const std::vector<int> root = Clustering(mesh, options).run(normals);
+// Charts of the clusters that `root` tells, projected along their normals.
+Charts projected(const Mesh& mesh, const std::vector<int>& root, const std::vector<Vec3>& normals, double density) {
   std::vector<int> number(root.size(), -1);
   Charts charts;
   charts.chart.resize(root.size());
@@ -192,6 +193,32 @@ Charts cluster_charts(const Mesh& mesh, const ViewSet& views, const AtlasOptions
   charts.height.resize(root.size());
   for (std::size_t t = 0; t < root.size(); ++t)
     for (const int v : mesh.triangles[t]) charts.height[t] += mesh.positions[v].dot(normals[root[t]]);
+  return charts;
+}
+
+}  // namespace
+
+Charts cluster_charts(const Mesh& mesh, const ViewSet& views, const AtlasOptions& options) {
+  check("atlas", options);
+  double density = 0;  // a texel is a pixel
+  for (const AlignedView& view : views.views)
+    density = std::max({density, std::abs(view.column_per_unit), std::abs(view.row_per_unit)});
+  std::vector<Vec3> normals;
+  std::vector<int> root =
+      Clustering(mesh, options, kWide, std::vector<int>(mesh.triangles.size())).run(options.max_clusters, normals);
+  Charts charts = projected(mesh, root, normals, density);
+  const std::vector<double> energies = unfold(mesh, density, charts);
+  if (std::ranges::all_of(energies, [](double energy) { return energy <= kDistorted; })) return charts;
+
+  std::vector<int> again(root.size(), -1);
+  for (std::size_t t = 0; t < root.size(); ++t)
+    if (energies[charts.chart[t]] > kDistorted) again[t] = charts.chart[t];
+  std::vector<Vec3> narrow_normals;
+  const std::vector<int> narrow = Clustering(mesh, options, kSteepest, again).run(1, narrow_normals);
+  for (std::size_t t = 0; t < root.size(); ++t)
+    if (again[t] >= 0) root[t] = narrow[t], normals[root[t]] = narrow_normals[root[t]];
+  charts = projected(mesh, root, normals, density);
+  unfold(mesh, density, charts);
   return charts;
 }
 

@@ -52,7 +52,7 @@ void visit_fields(TextureOptions& o, Visitor&& field) {
 
 enum class AtlasArm {
   view_charts,  // a chart = connected triangles that take the same drawing, laid out as drawn
-  clusters      // charts by planarity and compactness, laid onto their planes: the thesis's
+  clusters      // charts by planarity and compactness, unfolded: the thesis's
 };
 inline std::span<const char* const> names(AtlasArm) {
   static constexpr const char* all[] = {"view_charts", "clusters"};
