@@ -29,7 +29,9 @@ TEST_P(TextureOfModels, IsLaidOutSoundlyAndShowsTheDrawings) {
     EXPECT_EQ(scores.overlap, 0);
     EXPECT_EQ(scores.outside, 0);
     EXPECT_EQ(scores.flipped, 0);
-    if (arm == AtlasArm::clusters) EXPECT_LE(scores.distortion, 4.1);
+    if (arm == AtlasArm::clusters) {
+      EXPECT_LE(scores.distortion, 4.1);
+    }
     EXPECT_GE(*round_trip(result.textured, result.views).psnr, 30);
   }
 }

@@ -33,8 +33,8 @@ Charts view_charts(const Mesh& mesh, const ViewSet& views, const ViewChoice& cho
 /// neighbours that make the flattest and roundest chart are joined, until options.max_clusters are left or none would
 /// stay within options.max_distortion of a plane (root mean square). A chart is unfolded by a least squares conformal
 /// map \cite levy_2002 or projected onto its plane, whichever distorts less. One that neither lays out with all
-/// triangles face up and a symmetric Dirichlet energy of at most 5 is cut up into charts whose triangles look at most 75
-/// degrees away from their plane, so that none is stretched more than 3.9 times where they are projected.
+/// triangles face up and a symmetric Dirichlet energy of at most 5 is cut up into charts whose triangles look at most
+/// 75 degrees away from their plane, so that none is stretched more than 3.9 times where they are projected.
 Charts cluster_charts(const Mesh& mesh, const ViewSet& views, const AtlasOptions& options = {});
 
 /// Packs charts into a square, options.gutter texels apart, at one scale: with options.exact the largest whole number
