@@ -25,12 +25,15 @@ std::string MeshReport::why_not() const {
 
 MeshReport inspect(const Mesh& mesh) {
   MeshReport report{topology(mesh)};
-  if (!mesh.triangles.empty()) report.self_intersections = static_cast<std::int64_t>(self_intersections(mesh).size());
+  const auto meeting = self_intersections(mesh);
+  report.contacts = std::ssize(contacts(mesh, meeting));
+  report.self_intersections = std::ssize(meeting) - report.contacts;
   return report;
 }
 
 std::ostream& operator<<(std::ostream& out, const MeshReport& report) {
-  return out << report.topology << "self-intersections   " << report.self_intersections << '\n';
+  return out << report.topology << "self-intersections   " << report.self_intersections << '\n'
+             << "contacts             " << report.contacts << '\n';
 }
 
 std::string to_json(const MeshReport& report) {
@@ -50,6 +53,7 @@ std::string to_json(const MeshReport& report) {
                                       {"unused_vertices", t.unused_vertices},
                                       {"degenerate_triangles", t.degenerate_triangles},
                                       {"self_intersections", report.self_intersections},
+                                      {"contacts", report.contacts},
                                       {"components", t.components},
                                       {"euler", t.euler},
                                       {"genus", t.genus},

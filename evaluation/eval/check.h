@@ -9,7 +9,8 @@ namespace carve {
 /// All that mesh_check says of a mesh.
 struct MeshReport {
   Topology topology;
-  std::int64_t self_intersections = 0;  // pairs of triangles
+  std::int64_t self_intersections = 0;  // pairs of triangles, without those in contact
+  std::int64_t contacts = 0;            // pairs of triangles that only touch in a point (mesh/self_intersections.h)
 
   /// Closed, oriented, 2-manifold, no self-intersection, no degenerate triangle, counter-clockwise from outside.
   bool pass() const { return why_not().empty(); }

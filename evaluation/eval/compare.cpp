@@ -189,8 +189,10 @@ Comparison Reference::compare(const Mesh& compared) const {
   }
   if (options_.iou_resolution > 0 && closed_ && result.topology->closed())
     result.volume_iou = volume_iou(compared, mesh_, options_.iou_resolution);
-  if (options_.self_intersections)
-    result.self_intersections = static_cast<std::int64_t>(self_intersections(compared).size());
+  if (options_.self_intersections) {
+    const auto meeting = self_intersections(compared);
+    result.self_intersections = std::ssize(meeting) - std::ssize(contacts(compared, meeting));
+  }
   return result;
 }
 

@@ -82,7 +82,7 @@ const Metric kMetrics[] = {
   {"genus", "handles of C, all components together; C closed and manifold", Unit::count, Better::none, false,
    [](C c, double) { return c.topology && c.topology->solid() ? Value(static_cast<double>(c.topology->genus))
                                                               : Value(); }},
-  {"self_intersections", "pairs of C's triangles that meet elsewhere than in what they share", Unit::count,
+  {"self_intersections", "pairs of C's triangles that meet elsewhere than in what they share or a single point", Unit::count,
    Better::lower, false, [](C c, double) { return c.self_intersections ? Value(static_cast<double>(*c.self_intersections))
                                                                        : Value(); }},
   {"degenerate", "triangles of C without area", Unit::count, Better::lower, false,

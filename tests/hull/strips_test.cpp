@@ -70,6 +70,29 @@ TEST(StripsTest, TwoCrossedRoofsMeetInAPyramid) {
   expect_sound(hull, "pyramid");
 }
 
+/// A groove from above along z and one from below along x, each half as deep as the block, or a bit less.
+Silhouettes grooves(std::int32_t depth) {
+  Silhouettes s;
+  s.along = {{2, View::front, {{{0, 0}, {800, 0}, {800, 600}, {500, 600}, {400, 600 - depth}, {300, 600}, {0, 600}}}},
+             {0, View::side, {{{0, 0}, {600, 0}, {600, 900}, {0, 900}, {0, 600}, {300, 500}, {0, 400}}}}};
+  return s;
+}
+
+TEST(StripsTest, GroovesThatTouchAreInContact) {
+  for (const HullMethod method : {HullMethod::strips, HullMethod::nef}) {
+    const PolyhedralHull apart = polyhedral_hull(grooves(290), method),
+                         touching = polyhedral_hull(grooves(300), method);
+    expect_sound(apart, "apart");
+    EXPECT_TRUE(topology(touching.mesh).solid());
+    const auto meeting = self_intersections(touching.mesh);
+    EXPECT_GT(meeting.size(), 0u);
+    EXPECT_EQ(contacts(touching.mesh, meeting), meeting);
+  }
+  const Mesh through = polyhedral_hull(grooves(310)).mesh;  // a hole where they meet
+  EXPECT_EQ(topology(through).euler, 0);
+  EXPECT_EQ(self_intersections(through).size(), 0u);
+}
+
 class RandomHullTest : public testing::TestWithParam<unsigned> {};
 
 TEST_P(RandomHullTest, IsASolidWithoutSelfIntersection) {

@@ -93,5 +93,21 @@ TEST(SelfIntersections, ByOneSharedCornerEdgeOrTriangle) {
   EXPECT_EQ(self_intersections({p, {{0, 1, 2}, {5, 6, 4}, {0, 0, 5}}}), (Pairs{{0, 1}}));  // no area: left out
 }
 
+TEST(SelfIntersections, OfOnePointAreContacts) {
+  const std::vector<Vec3> p = {{0, 0, 0},  {1, 0, 0},       {0, 1, 0},         {0.25, 0.25, 0}, {0.25, 0.25, 1},
+                               {1, 1, 1},  {0.5, -0.25, 0}, {0.5, 0.25, 0},    {0.5, 0, 1},     {0.5, -1, 1},
+                               {-1, 0, 0}, {0.25, 0.25, 2}, {0.25, 0.25, -0.5}};
+  const auto are_contacts = [&](const Triangle& a, const Triangle& b) {
+    const Mesh two{p, {a, b}};
+    const Pairs meeting = self_intersections(two);
+    EXPECT_EQ(meeting.size(), 1u);
+    return contacts(two, meeting) == meeting;
+  };
+  EXPECT_TRUE(are_contacts({0, 1, 2}, {3, 4, 5}));    // a corner in a triangle
+  EXPECT_FALSE(are_contacts({0, 1, 2}, {12, 4, 5}));  // through it
+  EXPECT_FALSE(are_contacts({0, 1, 2}, {6, 7, 8}));   // a side in its plane
+  EXPECT_FALSE(are_contacts({0, 1, 2}, {0, 7, 8}));   // from a common corner
+}
+
 }  // namespace
 }  // namespace carve

@@ -39,7 +39,7 @@ struct PolyhedralHull {
 /// The mesh is closed, oriented and 2-manifold. Coplanar facets are one before they are triangulated. Where parts of
 /// the solid only touch, along a line or in a point, they are parted: each part gets its own vertices there,
 /// drawn apart by 2^-44. Not parted are edges that cross in a point without a vertex (two grooves from opposite sides,
-/// as deep as the solid): there the surface touches itself.
+/// as deep as the solid): there the surface touches itself, and mesh_check reports contacts, not self-intersections.
 /// \throws std::invalid_argument for silhouettes that are not two or three of different axes, or whose loops have fewer
 /// than three vertices or leave the lattice; NoResult if the intersection is empty
 PolyhedralHull polyhedral_hull(const Silhouettes& silhouettes, HullMethod method = HullMethod::strips,

@@ -1,5 +1,6 @@
 #include "carve/mesh/self_intersections.h"
 
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Intersections_3/Segment_3_Triangle_3.h>
 #include <CGAL/Intersections_3/Triangle_3_Triangle_3.h>
@@ -91,6 +92,25 @@ std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const Vert
     if (meeting[i]) pairs[kept++] = pairs[i];
   pairs.resize(kept);
   return pairs;
+}
+
+std::vector<std::pair<int, int>> contacts(const Mesh& mesh, std::span<const std::pair<int, int>> meeting) {
+  using Exact = CGAL::Exact_predicates_exact_constructions_kernel;
+  const auto shape = [&](const Triangle& t) {
+    const auto point = [&](int v) {
+      const Vec3& p = mesh.positions[v];
+      return Exact::Point_3(p.x(), p.y(), p.z());
+    };
+    return Exact::Triangle_3(point(t[0]), point(t[1]), point(t[2]));
+  };
+  std::vector<std::pair<int, int>> found;
+  for (const auto& [i, j] : meeting) {
+    const Triangle &a = mesh.triangles[i], &b = mesh.triangles[j];
+    if (std::ranges::any_of(a, [&](int v) { return std::ranges::count(b, v) > 0; })) continue;
+    const auto common = CGAL::intersection(shape(a), shape(b));
+    if (common && boost::get<Exact::Point_3>(&*common)) found.emplace_back(i, j);
+  }
+  return found;
 }
 
 }  // namespace carve

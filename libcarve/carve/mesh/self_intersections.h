@@ -21,4 +21,8 @@ std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh);
 std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const VertexTriangles& around,
                                                     std::span<const std::uint8_t> moved = {}, bool as_floats = false);
 
+/// Those of the pairs that are mere contact: triangles without a common vertex that have a single point in common.
+/// Surfaces that pass through each other have whole lines in common in some pair.
+std::vector<std::pair<int, int>> contacts(const Mesh& mesh, std::span<const std::pair<int, int>> meeting);
+
 }  // namespace carve
