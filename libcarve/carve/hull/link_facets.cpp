@@ -1,34 +1,10 @@
-#include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <numeric>
-#include <stdexcept>
-
-#include "carve/core/vector.h"
-#include "carve/hull/facets.h"
+#include "carve/hull/around.h"
+#include "carve/hull/match_sides.h"
 
 namespace carve::hull {
 namespace {
 
 using Sides = std::vector<FacetSide>;
-
-// Groups of side indices with one key in 0..keys-1: counting sort.
-struct Groups {
-  std::vector<int> start, items;
-
-  template <class Key>
-  Groups(int count, int keys, Key&& key) : start(keys + 1), items() {
-    for (int i = 0; i < count; ++i)
-      if (key(i) >= 0) ++start[key(i) + 1];
-    std::partial_sum(start.begin(), start.end(), start.begin());
-    items.resize(start.back());
-    std::vector<int> at(start.begin(), start.end() - 1);
-    for (int i = 0; i < count; ++i)
-      if (key(i) >= 0) items[at[key(i)]++] = i;
-  }
-  std::span<int> operator[](int k) { return {items.data() + start[k], items.data() + start[k + 1]}; }
-};
 
 class Linker {
  public:
@@ -36,16 +12,7 @@ class Linker {
       : points_(points), planes_(planes), sides_(std::move(sides)) {}
 
   Sides run() {
-    std::vector<int> loose = match();
-    if (has_seams()) {  // what touches there may end elsewhere
-      loose.resize(sides_.size());
-      std::iota(loose.begin(), loose.end(), 0);
-    }
-    if (!loose.empty()) {
-      split_where_others_end(loose);
-      for (FacetSide& side : sides_) side.partner = -1, side.touching = false;
-      if (!match().empty()) throw std::logic_error("the facets of a hull do not close");
-    }
+    sides_ = match_sides(points_, planes_, std::move(sides_));
     for (FacetSide& side : sides_)
       if (FacetSide& other = sides_[side.partner]; side.plane == other.plane) side.plane = other.plane = -1;
     link_corners();
@@ -67,26 +34,6 @@ class Linker {
  private:
   bool dropped(int side) const { return sides_[side].plane < 0; }
   void drop(int side) { sides_[side].plane = -1; }
-  Vec3 position(int point) const {
-    return {points_[point].coordinate(0), points_[point].coordinate(1), points_[point].coordinate(2)};
-  }
-  Vec3 normal(int side) const {
-    const auto& n = planes_[sides_[side].plane].normal;
-    return Vec3(n[0], n[1], n[2]).normalized();
-  }
-
-  std::vector<int> match();
-  bool has_seams() const {
-    return std::any_of(sides_.begin(), sides_.end(), [&](const FacetSide& side) {
-      return side.partner >= 0 && side.plane == sides_[side.partner].plane &&
-             side.source == sides_[side.partner].source;
-    });
-  }
-  bool match_line(const std::vector<int>& forward, const std::vector<int>& backward);
-  void pair_around(const std::vector<int>& forward, const std::vector<int>& backward);
-  void split_where_others_end(const std::vector<int>& loose);
-  bool in_one_line(int side, int other) const;
-  void split_line(const std::vector<int>& line);
   void link_corners();
   void pair_in_plane(const std::vector<int>& in, const std::vector<int>& out);
   void split(const Pinch& pinch);
@@ -97,131 +44,6 @@ class Linker {
   std::span<const FacetPlane> planes_;
   Sides sides_;
 };
-
-// Finds partners; returns the sides that have none because others end in the middle of them, or they of others.
-std::vector<int> Linker::match() {
-  Groups by_lower(static_cast<int>(sides_.size()), static_cast<int>(points_.size()),
-                  [&](int i) { return dropped(i) ? -1 : std::min(sides_[i].from, sides_[i].to); });
-  std::vector<int> loose, forward, backward;
-  for (int lower = 0; lower < static_cast<int>(points_.size()); ++lower) {
-    const std::span<int> group = by_lower[lower];
-    const auto upper = [&](int i) { return std::max(sides_[i].from, sides_[i].to); };
-    std::sort(group.begin(), group.end(),
-              [&](int i, int j) { return std::pair(upper(i), i) < std::pair(upper(j), j); });
-    for (auto i = group.begin(); i != group.end();) {
-      forward.clear(), backward.clear();
-      const int line = upper(*i);
-      for (; i != group.end() && upper(*i) == line; ++i) (sides_[*i].from == lower ? forward : backward).push_back(*i);
-      if (!match_line(forward, backward)) {
-        loose.insert(loose.end(), forward.begin(), forward.end());
-        loose.insert(loose.end(), backward.begin(), backward.end());
-      }
-    }
-  }
-  return loose;
-}
-
-// All sides between two points, those that run from the lower index to the higher one and those that run back.
-bool Linker::match_line(const std::vector<int>& forward, const std::vector<int>& backward) {
-  if (forward.size() != backward.size()) return false;
-  if (forward.size() > 1) {
-    pair_around(forward, backward);
-  } else {
-    sides_[forward[0]].partner = backward[0];
-    sides_[backward[0]].partner = forward[0];
-  }
-  return true;
-}
-
-// Around a line in which several parts of the solid touch: facets that bound the same part become partners.
-void Linker::pair_around(const std::vector<int>& forward, const std::vector<int>& backward) {
-  const Vec3 along = (position(sides_[forward[0]].to) - position(sides_[forward[0]].from)).normalized();
-  const Vec3 right = along.unitOrthogonal(), up = along.cross(right);
-  struct Spoke {
-    double angle;
-    int side;
-    bool forward;
-  };
-  std::vector<Spoke> spokes;
-  const auto add = [&](int side, bool is_forward) {
-    const Vec3 into = normal(side).cross(is_forward ? along : -along);  // from the line into the facet
-    spokes.push_back({std::atan2(into.dot(up) + 0.0, into.dot(right)), side, is_forward});
-    sides_[side].touching = true;
-  };
-  for (int side : forward) add(side, true);
-  for (int side : backward) add(side, false);
-  std::sort(spokes.begin(), spokes.end(),
-            [](const Spoke& p, const Spoke& q) { return std::pair(p.angle, p.side) < std::pair(q.angle, q.side); });
-  // Turning counter-clockwise about the line, the solid follows a backward side and ends at a forward one.
-  const std::size_t count = spokes.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const Spoke &first = spokes[i], &second = spokes[(i + 1) % count];
-    if (first.forward) continue;
-    if (!second.forward) throw std::logic_error("the facets around a line of a hull do not alternate");
-    sides_[first.side].partner = second.side;
-    sides_[second.side].partner = first.side;
-  }
-}
-
-// Sides in one line, joined by common ends, cover each other up: each is split at all ends in its line.
-void Linker::split_where_others_end(const std::vector<int>& loose) {
-  std::vector<int> parent(loose.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
-  std::vector<std::pair<int, int>> ends;  // point, index in loose
-  for (int i = 0; i < static_cast<int>(loose.size()); ++i) {
-    ends.emplace_back(sides_[loose[i]].from, i);
-    ends.emplace_back(sides_[loose[i]].to, i);
-  }
-  std::sort(ends.begin(), ends.end());
-  for (std::size_t i = 0; i < ends.size(); ++i)
-    for (std::size_t j = i + 1; j < ends.size() && ends[j].first == ends[i].first; ++j)
-      if (in_one_line(loose[ends[i].second], loose[ends[j].second]))
-        parent[root(ends[j].second)] = root(ends[i].second);
-
-  std::map<int, std::vector<int>> lines;
-  for (int i = 0; i < static_cast<int>(loose.size()); ++i) lines[root(i)].push_back(loose[i]);
-  for (const auto& [ignored, line] : lines) split_line(line);
-}
-
-bool Linker::in_one_line(int side, int other) const {
-  const FacetSide &s = sides_[side], &o = sides_[other];
-  const ExactPoint &p = points_[s.from], &q = points_[s.to];
-  const ExactPoint& r = points_[o.from == s.from || o.from == s.to ? o.to : o.from];
-  return orientation(p, q, r, 0, 1) == 0 && orientation(p, q, r, 1, 2) == 0 && orientation(p, q, r, 2, 0) == 0;
-}
-
-void Linker::split_line(const std::vector<int>& line) {
-  const ExactPoint &p = points_[sides_[line[0]].from], &q = points_[sides_[line[0]].to];
-  int axis = 0;
-  while (compare(p, q, axis) == 0) ++axis;
-  std::vector<int> stops;
-  for (const int side : line) {
-    stops.push_back(sides_[side].from);
-    stops.push_back(sides_[side].to);
-  }
-  const auto before = [&](int a, int b) { return compare(points_[a], points_[b], axis) < 0; };
-  std::sort(stops.begin(), stops.end(), before);
-  stops.erase(std::unique(stops.begin(), stops.end()), stops.end());
-  for (const int side : line) {
-    const FacetSide whole = sides_[side];
-    const bool upwards = before(whole.from, whole.to);
-    auto at = std::lower_bound(stops.begin(), stops.end(), upwards ? whole.from : whole.to, before);
-    const int last = upwards ? whole.to : whole.from;
-    for (bool first = true; *at != last; ++at, first = false) {
-      FacetSide part = whole;
-      part.from = upwards ? *at : at[1];
-      part.to = upwards ? at[1] : *at;
-      if (first)
-        sides_[side] = part;
-      else
-        sides_.push_back(part);
-    }
-  }
-}
 
 void Linker::link_corners() {
   const int count = static_cast<int>(sides_.size()), points = static_cast<int>(points_.size());
@@ -256,27 +78,14 @@ void Linker::link_corners() {
 // Several corners of facets of one plane in one point: each is the angle from a side that leaves to the next one,
 // counter-clockwise, that arrives.
 void Linker::pair_in_plane(const std::vector<int>& in, const std::vector<int>& out) {
-  const Vec3 up = normal(in[0]), x = up.unitOrthogonal(), y = up.cross(x);
-  struct Spoke {
-    double angle;
-    int side;
-    bool leaves;
-  };
-  std::vector<Spoke> spokes;
+  Spokes spokes(unit_normal(planes_[sides_[in[0]].plane]));
   const auto add = [&](int side, bool leaves) {
-    const Vec3 way = (position(sides_[side].to) - position(sides_[side].from)) * (leaves ? 1 : -1);
-    spokes.push_back({std::atan2(way.dot(y) + 0.0, way.dot(x)), side, leaves});
+    const Vec3 way = position(points_[sides_[side].to]) - position(points_[sides_[side].from]);
+    spokes.add(leaves ? way : -way, side, leaves);
   };
   for (const int side : in) add(side, false);
   for (const int side : out) add(side, true);
-  std::sort(spokes.begin(), spokes.end(),
-            [](const Spoke& p, const Spoke& q) { return std::pair(p.angle, p.leaves) < std::pair(q.angle, q.leaves); });
-  for (std::size_t i = 0; i < spokes.size(); ++i) {
-    const Spoke &first = spokes[i], &second = spokes[(i + 1) % spokes.size()];
-    if (!first.leaves) continue;
-    if (second.leaves) throw std::logic_error("the corners of a hull's facets overlap");
-    sides_[second.side].next = first.side;
-  }
+  spokes.each_sector("the corners of a hull's facets overlap", [&](int side, int other) { sides_[other].next = side; });
 }
 
 void Linker::split(const Pinch& pinch) {
