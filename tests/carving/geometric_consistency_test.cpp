@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 
 #include <random>
+#include <set>
 
 #include "carve/carving/cell_alternatives.h"
 #include "carve/carving/cell_solver.h"
+#include "carve/carving/region_strokes.h"
 #include "carve/core/parallel.h"
 #include "carve/grid/shadow.h"
 #include "carving/box_world.h"
@@ -48,6 +50,39 @@ TEST(Consistency, SolverClimbsWalledStairs) {
 TEST(Consistency, BrokenStrokesAreClosed) {
   EXPECT_GT(iou(couch(), Consistency::solver, 40, {.broken = 4}), 0.99);
   EXPECT_GT(iou(walled_stairs_world(5), Consistency::solver, 35, {.broken = 4}), 0.99);
+}
+
+/// A square with an outline and a stroke across it, in which so many pixels of every 40 are missing.
+Raster<Label> broken_square(int gap) {
+  Raster<Label> label(200, 200, Label::background);
+  for (int y = 20; y < 180; ++y)
+    for (int x = 20; x < 180; ++x) {
+      const bool level = std::min(y, 199 - y) < 23 || std::abs(y - 100) < 2, upright = std::min(x, 199 - x) < 23;
+      const bool drawn = (level && x % 40 >= gap) || (upright && y % 40 >= gap);
+      label(x, y) = drawn ? Label::edge : Label::surface;
+    }
+  return label;
+}
+
+TEST(Consistency, GapsAreMeasuredOnTheOutline) {
+  for (const int gap : {2, 5, 9, 14}) EXPECT_EQ(outline_gap(broken_square(gap)), gap);
+  EXPECT_EQ(outline_gap(broken_square(0)), 0);   // drawn all around
+  EXPECT_EQ(outline_gap(broken_square(40)), 0);  // without an outline
+}
+
+TEST(Consistency, GapsUpToTheGivenOnesAreClosed) {
+  const auto parts = [](int missing, double gap) {
+    Raster<Label> label = broken_square(missing);
+    Raster<int> component = stroke_components(label, gap);
+    fill_specks(label, component, 100);
+    std::set<int> names(component.pixels.begin(), component.pixels.end());
+    names.erase(-1);
+    return names.size();
+  };
+  for (const int gap : {4, 8, 12}) {
+    EXPECT_EQ(parts(gap, gap), 2u);
+    EXPECT_EQ(parts(gap, gap / 2.0), 1u);
+  }
 }
 
 class ConsistencyTest : public ::testing::TestWithParam<unsigned> {};

@@ -93,12 +93,44 @@ void drop_false_strokes(RegionWindow& window, const NearestSet& background, doub
   }
 }
 
+double outline_gap(const Raster<Label>& label) {
+  constexpr double kFew = 0.02, kMost = 0.5;  // shares of the outline that are missing
+  const int w = label.width, last = static_cast<int>(label.pixels.size()) - w - 1;
+  std::vector<int> missing;
+  std::int64_t drawn = 0;
+  for (int i = w + 1; i < last; ++i) {
+    if (label.pixels[i] == Label::background) continue;
+    const auto open = [&](int n) { return label.pixels[n] == Label::background; };
+    if (!open(i - 1) && !open(i + 1) && !open(i - w) && !open(i + w)) continue;
+    if (label.pixels[i] == Label::edge)
+      ++drawn;
+    else
+      missing.push_back(i);
+  }
+  const double share = missing.empty() ? 0 : static_cast<double>(missing.size()) / (missing.size() + drawn);
+  if (share < kFew || share > kMost) return 0;
+  DisjointSets sets(label.pixels.size());
+  std::vector<int> length(label.pixels.size(), 0);
+  Mask open(w, label.height);
+  for (const int i : missing) open.pixels[i] = 1;
+  for (const int i : missing)
+    for (const int n : {i - 1, i - w - 1, i - w, i - w + 1})
+      if (open.pixels[n]) sets.join(sets.find(n), sets.find(i));
+  for (const int i : missing) ++length[sets.find(i)];
+  std::vector<int> gaps;
+  for (const int i : missing)
+    if (length[i] > 0) gaps.push_back(length[i]);
+  std::nth_element(gaps.begin(), gaps.begin() + gaps.size() / 2, gaps.end());
+  return gaps[gaps.size() / 2];
+}
+
 Raster<int> stroke_components(const Raster<Label>& label, double gap) {
-  const int w = label.width, reach = static_cast<int>(std::ceil(gap / 2 + 1));
+  constexpr float kAsWide = 0.6F;  // share of the narrower basin
   const auto open = static_cast<float>(gap / 2 + 1);
+  const int w = label.width, reach = static_cast<int>(std::ceil(open / kAsWide));
   const Raster<std::uint16_t> to_stroke = squared_distances(where(label, Label::edge), reach);
   std::vector<float> root(reach * reach + 1);
-  for (std::size_t i = 0; i < root.size(); ++i) root[i] = std::min(static_cast<float>(std::sqrt(i)), open);
+  for (std::size_t i = 0; i < root.size(); ++i) root[i] = std::min(static_cast<float>(std::sqrt(i)), open / kAsWide);
   const auto height = [&](int i) { return root[to_stroke.pixels[i]]; };
 
   // The surface's pixels from the highest down, in the drawing's order where they are as high.
@@ -138,7 +170,7 @@ Raster<int> stroke_components(const Raster<Label>& label, double gap) {
     int here = i;
     for (int k = 0; k < basins; ++k) {
       const int basin = around[k];
-      if (k > 0 && height(i) < std::min(open, 0.6F * std::min(peak[here], peak[basin]))) continue;
+      if (k > 0 && height(i) < std::min(open, kAsWide * std::min(peak[here], peak[basin]))) continue;
       const float highest = std::max(peak[here], peak[basin]);
       here = sets.join(here, basin);
       peak[here] = highest;
@@ -147,6 +179,17 @@ Raster<int> stroke_components(const Raster<Label>& label, double gap) {
   Raster<int> out(w, label.height, -1);
   for (const int i : order) out.pixels[i] = sets.find(i);
   return out;
+}
+
+void fill_specks(Raster<Label>& label, Raster<int>& component, double smallest) {
+  std::vector<int> size(component.pixels.size(), 0);
+  for (const int c : component.pixels)
+    if (c >= 0) ++size[c];
+  for (std::size_t i = 0; i < size.size(); ++i)
+    if (int& c = component.pixels[i]; c >= 0 && size[c] < smallest) {
+      c = -1;
+      label.pixels[i] = Label::edge;
+    }
 }
 
 }  // namespace carve

@@ -20,8 +20,15 @@ double stroke_width(const Mask& edge);
 /// `smallest` pixels. The others, dark spots of a texture, become surface. \param width  stroke_width()
 void drop_false_strokes(RegionWindow& window, const NearestSet& background, double width, double gap, double smallest);
 
+/// How long gaps in the strokes are, in pixels: the median length of what is missing of the outline, which is closed in
+/// truth. 0 where it is drawn all around, or where the drawing has hardly any.
+double outline_gap(const Raster<Label>& label);
+
 /// Components of the surface between strokes, as a watershed of the distance to them: two basins are one if the pass
 /// between them is wider than the gap, or nearly as wide as the narrower basin. -1 on strokes and background.
 Raster<int> stroke_components(const Raster<Label>& label, double gap);
+
+/// Components of less than `smallest` pixels, left between the pieces of broken strokes, become part of the strokes.
+void fill_specks(Raster<Label>& label, Raster<int>& component, double smallest);
 
 }  // namespace carve

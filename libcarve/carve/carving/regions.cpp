@@ -44,7 +44,6 @@ class RegionFinder {
         surface_(where(window_.label, Label::surface)),
         stroke_(stroke_width(edge_)),
         nearest_surface_(surface_),
-        component_(stroke_components(window_.label, options.gap)),
         segment_(component_),
         inner_(inner_strokes()),
         nearest_inner_(inner_) {
@@ -65,7 +64,11 @@ class RegionFinder {
  private:
   /// The strokes, the false ones dropped from the window.
   Mask cleaned(const RegionOptions& options) {
-    drop_false_strokes(window_, background_, stroke_width(where(window_.label, Label::edge)), options.gap, 4 * voxel_);
+    constexpr double kInARow = 4;  // gaps as long as the outline's that may follow each other
+    const double broken = std::min(64.0, kInARow * outline_gap(window_.label)), gap = std::max(options.gap, broken);
+    drop_false_strokes(window_, background_, stroke_width(where(window_.label, Label::edge)), gap, 4 * voxel_);
+    component_ = stroke_components(window_.label, gap);
+    if (broken > 0) fill_specks(window_.label, component_, 4 * voxel_ * voxel_);
     return where(window_.label, Label::edge);
   }
 
@@ -196,11 +199,12 @@ class RegionFinder {
   double voxel_;  // pixels
   RegionWindow window_;
   NearestSet background_;
+  Raster<int> component_;  // of surface pixels, between strokes
   Mask edge_, surface_;
   double stroke_;  // width in pixels
   NearestSet nearest_surface_;
-  Raster<int> component_, segment_;  // of surface pixels
-  Mask inner_;                       // strokes
+  Raster<int> segment_;  // of surface pixels, of one colour
+  Mask inner_;           // strokes
   NearestSet nearest_inner_;
   Raster<int> pixel_, at_;  // of grid pixels
   std::vector<int> name_;   // segment -> region

@@ -9,12 +9,13 @@
 namespace carve {
 
 struct RegionOptions {
-  double gap = 6;  // pixels
+  double gap = 8;  // pixels
   bool colours = true;
 };
 template <class Visitor>
 void visit_fields(RegionOptions& o, Visitor&& field) {
-  field("gap", o.gap, 0.0, 64.0, "gaps in strokes up to this many pixels are closed");
+  field("gap", o.gap, 0.0, 64.0,
+        "gaps in strokes up to this many pixels are closed; longer ones where the outline has some, as long as those");
   field("colours", o.colours, "colour boundaries separate regions too, not only strokes");
 }
 
