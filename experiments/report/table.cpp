@@ -139,11 +139,15 @@ std::vector<std::string> notes_of(const Table& table) {
   return notes;
 }
 
-// " (+12 %)"; nothing where a share means nothing.
+// " (+12 %)", or " (× 123)" from ten times on; nothing where a share means nothing.
 std::string change_text(double value, double base) {
   if (!std::isfinite(value) || !std::isfinite(base) || base == 0) return "";
   const double percent = 100 * (value / base - 1);
   char text[32];
+  if (percent >= 900) {
+    std::snprintf(text, sizeof text, " (×\u00a0%.0f)", value / base);
+    return text;
+  }
   std::snprintf(text, sizeof text, std::abs(percent) < 9.95 ? " (%+.1f\u00a0%%)" : " (%+.0f\u00a0%%)", percent);
   return text;
 }

@@ -86,6 +86,7 @@ std::vector<RunMetric> all_metrics() {
       {"seconds_space_carving", "Space Carving", "s", Direction::lower},
       {"seconds_stereo", "depth maps of pairs of photos", "s", Direction::lower},
       {"seconds_fusion", "depth maps to points", "s", Direction::lower},
+      {"seconds_patches", "patches of the surface that photos agree on", "s", Direction::lower},
       {"seconds_poisson", "points to surface", "s", Direction::lower},
       {"points", "points that the mesh was made from", "", Direction::none},
       {"points_accuracy", "mean distance of these points to the reference", "% of the diagonal", Direction::lower},

@@ -3,7 +3,8 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <sstream>
+#include <charconv>
+#include <iterator>
 
 #include "carve/core/error.h"
 #include "carve/core/file.h"
@@ -80,14 +81,10 @@ class Reader {
     if (node.is_string()) return *node.value<std::string>();
     if (node.is_boolean()) return *node.value<bool>() ? "on" : "off";
     if (!node.is_integer() && !node.is_floating_point()) fail(node, "must be a number, a string, true or false");
-    std::ostringstream out;
-    out.imbue(std::locale::classic());
-    out.precision(17);
-    if (node.is_integer())
-      out << *node.value<std::int64_t>();
-    else
-      out << *node.value<double>();
-    return out.str();
+    char digits[32];
+    char* const end = node.is_integer() ? std::to_chars(digits, std::end(digits), *node.value<std::int64_t>()).ptr
+                                        : std::to_chars(digits, std::end(digits), *node.value<double>()).ptr;
+    return {digits, end};
   }
 
   template <class Convert>

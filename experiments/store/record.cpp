@@ -141,10 +141,14 @@ void name_stages(Overview& overview, const std::vector<Record>& records) {
   const auto known = [&](const std::string& name, const std::vector<RunMetric>& metrics) {
     return std::any_of(metrics.begin(), metrics.end(), [&](const RunMetric& m) { return m.name == name; });
   };
+  const auto measured = [&](const std::string& name) {
+    return std::any_of(records.begin(), records.end(), [&](const Record& r) { return r.metrics.contains(name); });
+  };
+  const bool every_stage = known(kEveryStage, overview.metrics);
   const std::string_view stage = std::string_view(kEveryStage).substr(0, std::string_view(kEveryStage).size() - 1);
   for (const RunMetric& metric : overview.metrics) {
     if (metric.name != kEveryStage) {
-      named.push_back(metric);
+      if (!every_stage || !metric.name.starts_with(stage) || measured(metric.name)) named.push_back(metric);
       continue;
     }
     for (const Record& record : records)

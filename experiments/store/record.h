@@ -66,7 +66,7 @@ Overview overview_from_json(const std::string& json, const std::string& path);
 std::vector<Record> load_records(const std::filesystem::path& folder, std::vector<std::string>& complaints);
 Overview load_overview(const std::filesystem::path& folder);
 
-/// All that a spec's runs left in its folder; kEveryStage has become the stages there are.
+/// All that a spec's runs left in its folder; kEveryStage has become the stages that any run had.
 struct Results {
   Overview overview;
   std::vector<Record> records;

@@ -2,11 +2,14 @@
 
 #include <cmath>
 
+#include "carve/core/file.h"
 #include "carve/surface/marching_cubes.h"
 #include "report/compare.h"
 #include "report/display_mesh.h"
 #include "report/table.h"
 #include "shapes.h"
+#include "store/record.h"
+#include "temporary_folder.h"
 
 namespace carve::experiments {
 namespace {
@@ -96,6 +99,28 @@ TEST(Table, AMethodThatNeverWorksLeavesTheOthersTheirMeans) {
       make_table(overview(), {record("ant", "base", 2), record("ant", "new", 0, "crashed")}, overview().metrics[0]);
   EXPECT_EQ(table.complete_rows, 1);
   EXPECT_EQ(table.summaries[0].mean, 2);
+}
+
+TEST(Summary, TenTimesAndMoreIsAFactor) {
+  const TextTable table = summary(overview(), {record("ant", "base", 2), record("ant", "new", 246)});
+  EXPECT_EQ(table.rows[1][1].text, "246.0 (×\u00a0123)");
+}
+
+TEST(Results, EveryStageIsThoseThatAnyRunHad) {
+  const TemporaryFolder folder;
+  Overview all = overview();
+  all.metrics = {{"error", "", "", Direction::lower},
+                 {"seconds_known", "", "s", Direction::lower},
+                 {"seconds_never", "", "s", Direction::lower},
+                 {kEveryStage, "", "s", Direction::lower}};
+  Record run = record("ant", "new", 1);
+  run.metrics.insert({{"seconds_known", 1}, {"seconds_new", 2}});
+  std::filesystem::create_directories(folder / "ant");
+  write_file(folder / kOverviewFile, [&](std::ostream& out) { out << to_json(all); });
+  write_file(folder / "ant" / kRecordFile, [&](std::ostream& out) { out << to_json(run); });
+  std::vector<std::string> names;
+  for (const RunMetric& metric : load_results(folder / "").overview.metrics) names.push_back(metric.name);
+  EXPECT_THAT(names, testing::ElementsAre("error", "seconds_known", "seconds_new"));
 }
 
 TEST(DisplayMesh, AMeshIsPackedWithinItsTrianglesAndTheSameWayEveryTime) {

@@ -62,6 +62,14 @@ TEST_F(SpecTest, SweptValuesWinOverAMethodsAndTheSpecs) {
   for (const Cell& cell : plan(read(kGood))) EXPECT_EQ(cell.settings.at("grid"), cell.swept.at("grid"));
 }
 
+TEST_F(SpecTest, SweptNumbersAreWrittenAsInTheSpec) {
+  const std::vector<Cell> cells =
+      plan(read("models = [\"box\"]\nsweep = { convex.grown = [0.2] }\n"
+                "[[method]]\nname = \"a\"\n"));
+  ASSERT_EQ(cells.size(), 1u);
+  EXPECT_EQ(cells[0].swept.at("convex.grown"), "0.2");
+}
+
 TEST_F(SpecTest, ShardsAreThePlan) {
   const std::vector<Cell> cells = plan(read(kGood));
   std::multiset<std::string> whole, parts;
