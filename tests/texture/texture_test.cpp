@@ -300,6 +300,14 @@ TEST(BestView, UnseenPartsTakeFlatColoursNotMixtures) {
   EXPECT_GT(flat, 0.9 * all);
 }
 
+TEST(BestView, UnseenPartsTakeWhatIsAsHighRatherThanWhatIsAbove) {
+  const Scene scene = carve::scene(box({1, 0.75, 0.5}), plain);
+  const TexturedMesh model = textured(scene);  // the back's middle: 0.5 beside the sides, 0.35 below the top
+  EXPECT_GT(for_triangles_near(model.mesh, {0, 0.4, -0.25}, 0.1,
+                               [&](int t) { EXPECT_EQ(texel_at(model, t), plain(View::side, 0, 0)); }),
+            4);
+}
+
 TEST(Level, MovesBothSidesOfAFaintSeamToMeetAndLeavesStrongOnesAlone) {
   for (const int difference : {20, 120}) {
     const auto painter = [&](View view, int, int) {

@@ -141,6 +141,7 @@ void SurfaceColours::fill() {
 void SurfaceColours::spread(const std::vector<int>& vertices, const std::vector<int>& index,
                             const std::vector<char>& known, Columns& colours) const {
   constexpr int kRounds = 40;
+  constexpr double kUpright = 6;   // how much nearer is what is as high than what is above or below
   constexpr double kSimilar = 24;  // RGB distance
   const int count = static_cast<int>(vertices.size());
   // Per vertex the next corners of the triangles around it; of a closed surface each neighbour once.
@@ -167,7 +168,9 @@ void SurfaceColours::spread(const std::vector<int>& vertices, const std::vector<
     if (here > distance[i]) continue;
     for (int e = first[i]; e < first[i + 1]; ++e) {
       const int j = beside[e];
-      const double there = here + (mesh_.positions[vertices[i]] - mesh_.positions[vertices[j]]).norm();
+      Vec3 step = mesh_.positions[vertices[i]] - mesh_.positions[vertices[j]];
+      step.y() *= kUpright;
+      const double there = here + step.norm();
       if (there >= distance[j]) continue;
       distance[j] = there, source[j] = source[i];
       open.emplace(there, j);

@@ -14,9 +14,9 @@ struct CornerColours {
 };
 
 /// What is added where no drawing shows the surface and along seams between drawings:
-/// - triangles without paint take their whole colour from it: that of the nearest paint along the surface, evened out
-///   among colours that differ little, so that borders between flat colours stay sharp; a part without any paint takes
-///   the drawings' mean;
+/// - triangles without paint take their whole colour from it: that of the nearest paint along the surface, heights
+///   counting six times, as things change with height rather than around; evened out among colours that differ little,
+///   so that borders between flat colours stay sharp. A part without any paint takes the drawings' mean;
 /// - at a vertex where patches meet whose colours differ by at most `level` (RGB distance), both sides are moved to
 ///   meet, fading out within some triangles \cite lempitsky_2007; larger differences are the drawing's own.
 /// \param patch  per triangle; triangles of one patch with paint have the same drawings
