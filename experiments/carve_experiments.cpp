@@ -191,10 +191,12 @@ int compare_command(const Arguments& arguments) {
 }
 
 int cell_command(const Arguments& arguments) {
+#ifndef __SANITIZE_ADDRESS__  // which reserves more than any limit
   // Address space, not resident memory: the only limit on memory that the kernel lets a process set for itself.
   const auto bytes = static_cast<rlim_t>(arguments.runner.megabytes * 1e6);
   const rlimit limit{bytes, bytes};
   setrlimit(RLIMIT_AS, &limit);
+#endif
   const auto [spec, cell] = cell_from_argument(arguments.cell);
   run_cell(arguments.results, spec, cell, arguments.threads);
   return kDone;
