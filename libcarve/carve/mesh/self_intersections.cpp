@@ -20,7 +20,7 @@ using Point = Kernel::Point_3;
 
 class Exactly {
  public:
-  explicit Exactly(const Mesh& mesh) : mesh_(mesh) {}
+  explicit Exactly(const Mesh& mesh, bool as_floats = false) : mesh_(mesh), as_floats_(as_floats) {}
 
   bool meet(int i, int j) const {
     const Kernel::Triangle_3 first = shape(mesh_.triangles[i]), second = shape(mesh_.triangles[j]);
@@ -47,6 +47,7 @@ class Exactly {
  private:
   Point point(int v) const {
     const Vec3& p = mesh_.positions[v];
+    if (as_floats_) return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
     return {p.x(), p.y(), p.z()};
   }
   Kernel::Triangle_3 shape(const Triangle& t) const { return {point(t[0]), point(t[1]), point(t[2])}; }
@@ -58,6 +59,7 @@ class Exactly {
   }
 
   const Mesh& mesh_;
+  const bool as_floats_;
 };
 
 }  // namespace
@@ -69,17 +71,11 @@ std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh) {
 std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const VertexTriangles& around,
                                                     std::span<const std::uint8_t> moved, bool as_floats) {
   double largest = 0;
-  Mesh rounded;
-  if (as_floats) {
-    rounded.triangles = mesh.triangles;
-    for (const Vec3& p : mesh.positions) {
-      largest = std::max(largest, p.cwiseAbs().maxCoeff());
-      rounded.positions.push_back(p.cast<float>().cast<double>());
-    }
-  }
+  if (as_floats)
+    for (const Vec3& p : mesh.positions) largest = std::max(largest, p.cwiseAbs().maxCoeff());
   std::vector<std::pair<int, int>> pairs =
       near_pairs(mesh, around, moved, largest * std::numeric_limits<float>::epsilon());
-  const Exactly exactly(mesh), as_written(rounded);
+  const Exactly exactly(mesh), as_written(mesh, true);
   std::vector<std::uint8_t> meeting(pairs.size());
   parallel_ranges(0, static_cast<int>(pairs.size()), 256, [&](int first, int last) {
     for (int k = first; k < last; ++k) {

@@ -103,6 +103,38 @@ Vec3 guided(const Vec3& step, const Guide& guide) {
   }
 }
 
+void take_steps(Mesh& mesh, const VertexTriangles& around, const SmoothOptions& options, const Monitor& monitor,
+                const Guide* guide) {
+  // Found once: what is sharp in the input stays, however the steps bend its surroundings.
+  const std::vector<std::uint8_t> sharp = options.level < 180 ? sharp_vertices(mesh, around, options.level)
+                                                              : std::vector<std::uint8_t>(mesh.positions.size());
+  const Rings rings = one_rings(mesh, around);
+  std::vector<Vec3> moved(mesh.positions.size());
+  const auto move = [&](double share) {
+    parallel_ranges(0, static_cast<int>(moved.size()), kGrain, [&](int first, int last) {
+      for (int v = first; v < last; ++v) {
+        const Vec3& position = mesh.positions[v];
+        const std::span ring(rings.neighbours.data() + 2 * std::size_t{around.first[v]}, sharp[v] ? 0 : rings.sizes[v]);
+        // Summing differences, as Equation 3.7 does, keeps planes exactly plane.
+        Vec3 sum = Vec3::Zero();
+        for (const int other : ring) sum += mesh.positions[other] - position;
+        if (!ring.empty()) sum *= share / static_cast<double>(ring.size());
+        moved[v] = position + (guide ? guided(sum, guide[v]) : sum);
+      }
+    });
+    mesh.positions.swap(moved);
+  };
+  for (int step = 0; step < options.steps; ++step) {
+    monitor.at("smooth", static_cast<double>(step) / options.steps);
+    if (options.method == Smoothing::laplacian) {
+      move(1);
+    } else {
+      move(kInwards);
+      move(kOutwards);
+    }
+  }
+}
+
 /// Puts vertices of triangles that meet back to where they were `before`, half the way first, until no more meet than
 /// did there.
 void mend(Mesh& mesh, const std::vector<Vec3>& before, const VertexTriangles& around) {
@@ -137,36 +169,8 @@ Mesh smooth(Mesh mesh, const SmoothOptions& options, const Monitor& monitor, con
     throw std::invalid_argument("smooth: guides must be as many as the mesh's vertices");
   if (options.steps == 0 || options.level == 0) return mesh;
   const VertexTriangles around = vertex_triangles(mesh);
-  // Found once: what is sharp in the input stays, however the steps bend its surroundings.
-  const std::vector<std::uint8_t> sharp = options.level < 180 ? sharp_vertices(mesh, around, options.level)
-                                                              : std::vector<std::uint8_t>(mesh.positions.size());
-  const Rings rings = one_rings(mesh, around);
-  const Guide* guide = options.keep && !guides.empty() ? guides.data() : nullptr;
   const std::vector<Vec3> before = options.mend ? mesh.positions : std::vector<Vec3>();
-  std::vector<Vec3> moved(mesh.positions.size());
-  const auto move = [&](double share) {
-    parallel_ranges(0, static_cast<int>(moved.size()), kGrain, [&](int first, int last) {
-      for (int v = first; v < last; ++v) {
-        const Vec3& position = mesh.positions[v];
-        const std::span ring(rings.neighbours.data() + 2 * std::size_t{around.first[v]}, sharp[v] ? 0 : rings.sizes[v]);
-        // Summing differences, as Equation 3.7 does, keeps planes exactly plane.
-        Vec3 sum = Vec3::Zero();
-        for (const int other : ring) sum += mesh.positions[other] - position;
-        if (!ring.empty()) sum *= share / static_cast<double>(ring.size());
-        moved[v] = position + (guide ? guided(sum, guide[v]) : sum);
-      }
-    });
-    mesh.positions.swap(moved);
-  };
-  for (int step = 0; step < options.steps; ++step) {
-    monitor.at("smooth", static_cast<double>(step) / options.steps);
-    if (options.method == Smoothing::laplacian) {
-      move(1);
-    } else {
-      move(kInwards);
-      move(kOutwards);
-    }
-  }
+  take_steps(mesh, around, options, monitor, options.keep && !guides.empty() ? guides.data() : nullptr);
   if (options.mend) mend(mesh, before, around);
   monitor.at("smooth", 1);
   return mesh;
