@@ -37,6 +37,7 @@ constexpr Method kMethods[] = {
     {"silhouettes", "the visual hull of photos", silhouettes_arm, true},
     {"space_carving", "Space Carving from that hull", space_carving_arm, true},
     {"drawings_and_photos", "Space Carving from what the pipeline carved", drawings_and_photos_arm, true},
+    {"open_cells", "what the pipeline carved; photos settle the cells that drawings leave open", open_cells_arm, true},
     {"stereo", "dense stereo of photos, fusion, Poisson", stereo_arm, true},
     {"patches", "multi-view stereo by patches as PMVS does it, Poisson", patches_arm, true},
     {"colmap", "sparse points of COLMAP, if it is installed; Poisson", colmap_arm, true},

@@ -2,6 +2,7 @@
 
 #include "carve/core/error.h"
 #include "carve/photo/poisson.h"
+#include "carve/photo/settle_cells.h"
 #include "carve/photo/silhouette_hull.h"
 #include "carve/surface/marching_cubes.h"
 
@@ -67,6 +68,18 @@ MethodOutput drawings_and_photos_arm(const MethodInput& input) {
   MethodOutput output{.times = std::move(drawn.times)};
   const VoxelGrid hull = hull_of(output, drawn.grid, input);
   mesh_grid(output, carved(output, hull, input), input);
+  return output;
+}
+
+MethodOutput open_cells_arm(const MethodInput& input) {
+  Reconstruction drawn = reconstruct(input.drawings, input.options.pipeline);
+  MethodOutput output{.times = std::move(drawn.times)};
+  SettledCells settled = timed(output, "open_cells", [&] {
+    return settle_cells(input.photos.photos, drawn.grid, drawn.consistency.open_cells, input.options.space_carving);
+  });
+  output.provenance["open cells"] =
+      std::to_string(settled.kept) + " kept, " + std::to_string(settled.dropped) + " dropped";
+  mesh_grid(output, settled.grid, input);
   return output;
 }
 

@@ -15,6 +15,8 @@ MethodOutput silhouettes_arm(const MethodInput& input);
 MethodOutput space_carving_arm(const MethodInput& input);
 /// Space Carving from what geometric consistency left of the drawings' hull: the combination the thesis proposes (5.2).
 MethodOutput drawings_and_photos_arm(const MethodInput& input);
+/// What the pipeline carved, with the cells that the drawings leave open settled by Space Carving.
+MethodOutput open_cells_arm(const MethodInput& input);
 /// Dense stereo, fusion, Poisson.
 MethodOutput stereo_arm(const MethodInput& input);
 /// Patches as PMVS makes them, Poisson.

@@ -33,6 +33,7 @@ std::vector<OpenCell> boxes_of(const Cells& cells, std::span<const int> open, st
       OpenCell& cell = out[place[run.cell]];
       cell.low = cell.low.cwiseMin(Vec3i(run.x0, run.y, run.z));
       cell.high = cell.high.cwiseMax(Vec3i(run.x1, run.y + 1, run.z + 1));
+      cell.runs.push_back(run);
     }
   return out;
 }

@@ -50,6 +50,7 @@ struct OpenCell {
   std::int64_t voxels = 0;
   bool kept = false;  // in the solid that was chosen
   Vec3i low, high;    // its box in voxels: low <= index < high
+  std::vector<CellRun> runs = {};
 };
 
 struct ConsistencyResult {

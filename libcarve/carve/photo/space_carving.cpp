@@ -1,92 +1,16 @@
 #include "carve/photo/space_carving.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <stdexcept>
 #include <vector>
 
 #include "carve/core/options.h"
 #include "carve/core/parallel.h"
+#include "carve/photo/plane_sweep.h"
 
 namespace carve {
 namespace {
-
-// A pixel whose ray passes through a voxel of the slice.
-struct Hit {
-  int voxel, pixel;
-};
-
-// One photo, as the sweeps need it: the ray of pixel (i, j) is base + i * right + j * down.
-struct Eye {
-  const Photo* photo;
-  Vec3 centre, base, right, down;
-  Picture low, high;  // least and largest channels around each pixel
-  Mask taken;         // pixels that this sweep has given to a voxel, or that do not show the object
-  // Of the slice at hand: its pixels, and for each of them the voxel that its ray enters first.
-  std::vector<Hit> hits;
-  Raster<float> near;
-  Raster<int> owner;
-};
-
-// Every pixel's least or largest channels among the object's pixels up to `reach` away along x and along y.
-template <class Choose>
-Picture spread(const Photo& photo, int reach, Rgba none, Choose&& choose) {
-  const auto pass = [&](const Picture& from, int dx, int dy) {
-    Picture to(from.width, from.height, none);
-    parallel_ranges(0, from.height, 16, [&](int first, int last) {
-      for (int y = first; y < last; ++y)
-        for (int x = 0; x < from.width; ++x) {
-          Rgba& p = to(x, y);
-          for (int k = -reach; k <= reach; ++k)
-            if (from.contains(x + k * dx, y + k * dy)) {
-              const Rgba& q = from(x + k * dx, y + k * dy);
-              p = {choose(p.r, q.r), choose(p.g, q.g), choose(p.b, q.b), 255};
-            }
-        }
-    });
-    return to;
-  };
-  Picture object = photo.picture;
-  for (std::size_t i = 0; i < object.pixels.size(); ++i)
-    if (!photo.mask.pixels[i]) object.pixels[i] = none;
-  return pass(pass(object, 1, 0), 0, 1);
-}
-
-// \param margin  how far the surface may be off, in world units, near `middle`
-Eye eye_of(const Photo& photo, const Vec3& middle, double margin) {
-  const Camera& camera = photo.camera;
-  const double depth = camera.in_camera(middle).z();
-  const int reach = depth > 0 ? static_cast<int>(std::lround(std::min(64.0, margin * camera.focal / depth))) : 0;
-  const Vec3 base = ray(camera, {0.5, 0.5});
-  return {.photo = &photo,
-          .centre = camera.centre(),
-          .base = base,
-          .right = ray(camera, {1.5, 0.5}) - base,
-          .down = ray(camera, {0.5, 1.5}) - base,
-          .low = spread(photo, reach, {255, 255, 255, 255}, [](auto a, auto b) { return std::min(a, b); }),
-          .high = spread(photo, reach, {0, 0, 0, 255}, [](auto a, auto b) { return std::max(a, b); }),
-          .taken = {},
-          .hits = {},
-          .near = Raster<float>(camera.width, camera.height, INFINITY),
-          .owner = Raster<int>(camera.width, camera.height, -1)};
-}
-
-// The direction that a sweep goes in.
-struct Way {
-  int axis, sign;
-  // Each ray belongs to one sweep, the one along its largest component: it crosses the slices steeply there.
-  bool leads(const Vec3& d) const {
-    const int a = (axis + 1) % 3, b = (axis + 2) % 3;
-    const double along = sign * d[axis];
-    return along > 0 && (along > std::abs(d[a]) || (along == std::abs(d[a]) && axis < a)) &&
-           (along > std::abs(d[b]) || (along == std::abs(d[b]) && axis < b));
-  }
-  bool may_lead(const Vec3& d, double margin) const {
-    const double along = sign * d[axis] + margin;
-    return along > std::abs(d[(axis + 1) % 3]) && along > std::abs(d[(axis + 2) % 3]);
-  }
-};
 
 // What one photo says of a voxel: the range of its colours.
 struct Sight {
@@ -107,52 +31,6 @@ struct Seen {
   Sight sight;
 };
 
-// Where the ray from the origin enters the cube of half side h about c, as a multiple of its direction; negative if it
-// passes by.
-double entry(const Vec3& c, double h, const Vec3& direction) {
-  double near = 0, far = INFINITY;
-  for (int k = 0; k < 3; ++k) {
-    const double inverse = 1 / direction[k];
-    const double a = (c[k] - h) * inverse, b = (c[k] + h) * inverse;
-    near = std::max(near, std::min(a, b)), far = std::min(far, std::max(a, b));
-  }
-  return near < far ? near : -1;
-}
-
-// Calls visit(i, j, depth) for the pixels whose rays pass through the voxel and belong to the sweep; for the pixel of
-// its centre if the voxel lies between the rays.
-template <class Visit>
-void for_footprint(const Eye& eye, const Way& way, const Vec3& centre, double spacing, Visit&& visit) {
-  const Vec3 from_eye = centre - eye.centre;
-  if (!way.may_lead(from_eye, 2 * spacing)) return;
-  const Camera& camera = eye.photo->camera;
-  const Vec3 p = camera.rotation * from_eye;
-  if (p.z() <= spacing) return;
-  const double x = p.x() / p.z(), y = p.y() / p.z();
-  double wide = 0, high = 0;
-  for (int k = 0; k < 3; ++k) {
-    wide += std::abs(camera.rotation(0, k) - x * camera.rotation(2, k));
-    high += std::abs(camera.rotation(1, k) - y * camera.rotation(2, k));
-  }
-  // A little more than the first-order extent: the cube's near corners look larger.
-  const double half = camera.focal / p.z() * spacing / 2 * (1 + spacing / p.z());
-  const double u = camera.focal * x + camera.principal.x(), v = camera.focal * y + camera.principal.y();
-  const auto first = [](double at, int n) { return static_cast<int>(std::ceil(std::clamp(at - 0.5, 0.0, 1.0 * n))); };
-  const int i1 = first(u + half * wide + 1e-9, camera.width), j1 = first(v + half * high + 1e-9, camera.height);
-  bool any = false;
-  for (int j = first(v - half * high, camera.height); j < j1; ++j)
-    for (int i = first(u - half * wide, camera.width); i < i1; ++i) {
-      const Vec3 direction = eye.base + i * eye.right + j * eye.down;
-      const double depth = entry(from_eye, spacing / 2, direction);
-      if (depth < 0) continue;
-      any = true;
-      if (way.leads(direction)) visit(i, j, static_cast<float>(depth));
-    }
-  if (any || !(u >= 0 && v >= 0 && u < camera.width && v < camera.height)) return;
-  const int i = static_cast<int>(u), j = static_cast<int>(v);
-  if (way.leads(eye.base + i * eye.right + j * eye.down)) visit(i, j, static_cast<float>(p.z()));
-}
-
 bool consistent(const Sights& sights, const SpaceCarvingOptions& options) {
   const std::size_t count = sights.size(),
                     odd = static_cast<std::size_t>(options.outliers * static_cast<double>(count));
@@ -169,8 +47,9 @@ bool consistent(const Sights& sights, const SpaceCarvingOptions& options) {
 
 class Carver {
  public:
-  Carver(std::span<const Photo> photos, VoxelGrid start, const SpaceCarvingOptions& options)
-      : options_(options), grid_(std::move(start)) {
+  // \param open  the voxels that may go; null: all
+  Carver(std::span<const Photo> photos, VoxelGrid start, const VoxelGrid* open, const SpaceCarvingOptions& options)
+      : options_(options), grid_(std::move(start)), open_(open) {
     const Vec3 middle = grid_.low() + grid_.spacing() / 2 * grid_.size().cast<double>();
     for (const Photo& photo : photos) eyes_.push_back(eye_of(photo, middle, options.margin * grid_.spacing()));
   }
@@ -194,6 +73,10 @@ class Carver {
   }
 
  private:
+  bool stays(const Vec3i& v, const Sights& sights) const {
+    return (open_ && !(*open_)(v.x(), v.y(), v.z())) || consistent(sights, options_);
+  }
+
   // A voxel with six neighbours inside is hidden from everywhere.
   bool on_surface(const Vec3i& v) const {
     for (int axis = 0; axis < 3; ++axis)
@@ -244,7 +127,7 @@ class Carver {
         if (s.pixels > 0 && s.pixels >= options_.visible * (s.pixels + s.hidden)) sights[s.voxel].push_back(s);
     std::vector<char> keeps(count);
     for (int i = 0; i < count; ++i) {
-      keeps[i] = consistent(sights[i], options_);
+      keeps[i] = stays(surface[i], sights[i]);
       if (!keeps[i])
         grid_.set(surface[i].x(), surface[i].y(), surface[i].z(), false);
       else
@@ -302,13 +185,14 @@ class Carver {
       const Vec3i& v = seen_[i].voxel;
       sights.push_back(seen_[i].sight);
       if (i + 1 < seen_.size() && seen_[i + 1].voxel == v) continue;
-      if (!consistent(sights, options_)) grid_.set(v.x(), v.y(), v.z(), false);
+      if (!stays(v, sights)) grid_.set(v.x(), v.y(), v.z(), false);
       sights.clear();
     }
   }
 
   const SpaceCarvingOptions& options_;
   VoxelGrid grid_;
+  const VoxelGrid* open_;
   std::vector<Eye> eyes_;
   std::vector<Seen> seen_;  // in this round, by voxels that may have gone since
 };
@@ -319,7 +203,15 @@ SpaceCarving space_carving(std::span<const Photo> photos, VoxelGrid start, const
                            const Monitor& monitor) {
   check("space_carving", options);
   check_photos(photos);
-  return Carver(photos, std::move(start), options).run(monitor);
+  return Carver(photos, std::move(start), nullptr, options).run(monitor);
+}
+
+SpaceCarving space_carving_within(std::span<const Photo> photos, VoxelGrid start, const VoxelGrid& open,
+                                  const SpaceCarvingOptions& options, const Monitor& monitor) {
+  check("space_carving", options);
+  check_photos(photos);
+  if (open.size() != start.size()) throw std::invalid_argument("Space Carving: the grids' sizes differ");
+  return Carver(photos, std::move(start), &open, options).run(monitor);
 }
 
 }  // namespace carve

@@ -50,4 +50,9 @@ struct SpaceCarving {
 SpaceCarving space_carving(std::span<const Photo> photos, VoxelGrid start, const SpaceCarvingOptions& options = {},
                            const Monitor& monitor = {});
 
+/// The same, but only voxels of `open` may go; the others hide what lies behind them, whatever their colours.
+/// \throws also std::invalid_argument if the grids' sizes differ
+SpaceCarving space_carving_within(std::span<const Photo> photos, VoxelGrid start, const VoxelGrid& open,
+                                  const SpaceCarvingOptions& options = {}, const Monitor& monitor = {});
+
 }  // namespace carve
