@@ -123,6 +123,20 @@ TEST(Convex, ThreeCirclesMakeASphere) {
   }
 }
 
+TEST(Convex, AsPrintedThreeCirclesMakeASphereToo) {
+  const ViewSet views = aligned(ball(), kThreeViews, {.pixels = 512});
+  const VoxelGrid solid = hull(views, 96), sphere = refined(solid, views, {.rule = ConvexRule::as_printed});
+  EXPECT_TRUE(contains(solid, sphere));
+  EXPECT_NEAR(sphere.volume() / ball().volume, 1, 0.02);
+}
+
+TEST(Convex, AsPrintedRectanglesAndStairsChangeNothing) {
+  for (const Shape& shape : {box(), stairs()}) {
+    const ViewSet views = aligned(shape, kThreeViews);
+    EXPECT_EQ(refined(hull(views, 48), views, {.rule = ConvexRule::as_printed}), hull(views, 48)) << shape.name;
+  }
+}
+
 /// Root mean square distance of a mesh's vertices from a ball's surface.
 double roughness(const Mesh& mesh) {
   double squares = 0;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "carve/carving/row_hull.h"
 #include "carve/core/parallel.h"
 
 namespace carve {
@@ -14,7 +15,6 @@ constexpr std::size_t kFewestGrown = 3;  // slices of a part whose outlines have
 constexpr double kBlend = 0.12;          // of the longest side: how far apart sections that look grown are alike
 constexpr double kSoften = 0.04;         // of the longest side: how far apart the ends of what is kept are alike
 constexpr int kFarthest = 16;            // voxels, of both: work stays in bounds
-constexpr double kConvex = 0.97;  // share of its convex hull that a convex section fills, for its voxels' corners
 
 float power(float base, int exponent) {
   float result = 1;
@@ -27,42 +27,6 @@ float power(float base, int exponent) {
 float way_out(int index, float low, float high, int exponent) {
   return power(std::abs((2 * index + 1 - low - high) / (high - low)), exponent);
 }
-
-/// Of voxels that are added row by row, the rows upwards.
-class ConvexHull {
- public:
-  /// Voxels u0 <= u < u1 of row v.
-  void add(int v, int u0, int u1) {
-    for (const int corner : {v, v + 1}) {
-      extend(low_, {corner, u0}, 1);
-      extend(high_, {corner, u1}, -1);
-    }
-  }
-  double area() const { return under(high_) - under(low_); }
-
- private:
-  struct Corner {
-    int v, u;
-  };
-  static int turn(const Corner& a, const Corner& b, const Corner& c) {
-    return (b.v - a.v) * (c.u - a.u) - (b.u - a.u) * (c.v - a.v);
-  }
-  static void extend(std::vector<Corner>& chain, const Corner& next, int side) {
-    if (!chain.empty() && chain.back().v == next.v) {
-      if (side * (next.u - chain.back().u) >= 0) return;
-      chain.pop_back();
-    }
-    while (chain.size() > 1 && side * turn(chain[chain.size() - 2], chain.back(), next) <= 0) chain.pop_back();
-    chain.push_back(next);
-  }
-  static double under(const std::vector<Corner>& chain) {
-    double area = 0;
-    for (std::size_t i = 1; i < chain.size(); ++i)
-      area += (chain[i].v - chain[i - 1].v) * (chain[i].u + chain[i - 1].u) / 2.0;
-    return area;
-  }
-  std::vector<Corner> low_, high_;
-};
 
 /// A bit for each corner that lies between two ends which drift.
 std::uint8_t drifting_corners(const Drift& drift) {
@@ -129,7 +93,7 @@ void ContourField::keep_unfilled(int axis, double filled, double convex) {
   parallel_ranges(0, all.slices, 4, [&](int first, int last) {
     for (int slice = first; slice < last; ++slice) {
       const int begin = all.first_section[slice], end = all.first_section[slice + 1];
-      std::vector<ConvexHull> hulls(end - begin);
+      std::vector<RowHull> hulls(end - begin);
       std::vector<int> inside(end - begin, 0);
       for (int v = 0; v < all.height; ++v) {
         const int at = slice * all.height + v;

@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "carve/carving/contour_field.h"
+#include "carve/carving/convex_as_printed.h"
 #include "carve/core/options.h"
 #include "carve/core/parallel.h"
 
@@ -208,6 +209,7 @@ class CutEdges {
 Refinement refine_convex(const VoxelGrid& solid, const ViewSet& views, const ConvexOptions& options) {
   check("convex", options);
   if (!options.arm) return {solid, {}};
+  if (options.rule == ConvexRule::as_printed) return {refine_convex_as_printed(solid, views), {}};
   const ContourField field(solid, views, options);
   if (!field.rounds()) return {solid, {}};
   RayMinima minima(solid.size());

@@ -1,12 +1,25 @@
 #pragma once
+#include <span>
+
 #include "carve/grid/edge_crossings.h"
 #include "carve/grid/voxel_grid.h"
 #include "carve/views/view_set.h"
 
 namespace carve {
 
+/// What is rounded by a scaled contour.
+enum class ConvexRule {
+  parts,      // parts that two drawings show curved
+  as_printed  // the whole object, slice by slice, by a drawing whose silhouette is convex: Algorithm 3.5
+};
+inline std::span<const char* const> names(ConvexRule) {
+  static constexpr const char* all[] = {"parts", "as_printed"};
+  return all;
+}
+
 struct ConvexOptions {
   bool arm = true;
+  ConvexRule rule = ConvexRule::parts;
   double evidence = 0.3;
   double bend = 0.4;
   double grown = 0.2;
@@ -14,6 +27,7 @@ struct ConvexOptions {
 template <class Visitor>
 void visit_fields(ConvexOptions& o, Visitor&& field) {
   field("arm", o.arm, "parts that two drawings show curved are rounded");
+  field("rule", o.rule, "what is rounded: parts that drawings show curved, or slices of the whole as printed");
   field("evidence", o.evidence, 0.01, 1.0,
         "share of a part's corners between two sloping outlines that makes it round");
   field("bend", o.bend, 0.05, 100.0, "least curvature of its outlines: rms distance from lines, % of the longest side");
@@ -41,8 +55,8 @@ struct Refinement {
 /// The result lies inside `solid` and casts the same shadow in every view: on each ray the voxels deepest inside their
 /// sections' contours stay; in a solid that looks grown, those around them that are as deep, too.
 ///
-/// Arm off: `solid` itself. \param views  drawings that `solid` was carved from \throws std::invalid_argument on an
-/// option out of range
+/// As printed, the other silhouettes may break and there are no crossings. Arm off: `solid` itself. \param views
+/// drawings that `solid` was carved from \throws std::invalid_argument on an option out of range
 Refinement refine_convex(const VoxelGrid& solid, const ViewSet& views, const ConvexOptions& options = {});
 
 }  // namespace carve
