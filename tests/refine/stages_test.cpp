@@ -120,6 +120,14 @@ TEST_P(NoisyBall, IsSmootherAndAsLargeAfterMeanCurvatureFlow) {
   EXPECT_NEAR(topology(flowed).volume, topology(noisy).volume, 1e-6 * topology(noisy).volume);
 }
 
+TEST_P(NoisyBall, KeepsItsVolumeBesideFeatures) {
+  Mesh half = shaken(ball_mesh(4), GetParam(), 0.01);  // with a sharp rim
+  for (Vec3& p : half.positions) p.y() = std::max(p.y(), 0.0);
+  const Mesh flowed = smooth_shape(half, {.feature = 60});
+  EXPECT_NE(flowed, half);
+  EXPECT_NEAR(topology(flowed).volume, topology(half).volume, 1e-6 * topology(half).volume);
+}
+
 TEST_P(NoisyBall, HasEvenerTrianglesAfterRelaxation) {
   Mesh uneven = shaken(ball_mesh(4), GetParam(), 0.02);
   for (Vec3& p : uneven.positions) p.normalize();

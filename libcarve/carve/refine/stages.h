@@ -38,7 +38,7 @@ Mesh remesh(const Mesh& mesh, const StageOptions& options = {});
 // These move vertices and leave the triangles as they are.
 
 /// Mean-curvature flow with a fixed stiffness matrix, so that necks do not pinch \cite kazhdan_2012; features stay.
-/// Where there are none, the whole is scaled back to its volume, else it shrinks.
+/// The volume that it takes is given back by an even offset along the normals.
 Mesh smooth_shape(const Mesh& mesh, const StageOptions& options = {});
 /// Evens out angles and areas around the vertices, then projects back onto the surface; features stay
 /// \cite surazhsky_2004.
