@@ -87,6 +87,7 @@ OrientedPoints fuse(std::span<const DepthMap> maps, const Vec3& low, const Vec3&
 
 OrientedPoints with_normals(const std::vector<Vec3>& positions, const std::vector<Vec3>& towards) {
   std::vector<PointAndNormal> all;
+  all.reserve(positions.size());
   for (const Vec3& p : positions) all.push_back({Kernel::Point_3(p.x(), p.y(), p.z()), CGAL::NULL_VECTOR});
   OrientedPoints result;
   if (all.size() <= kNeighbours) return result;

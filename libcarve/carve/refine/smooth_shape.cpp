@@ -14,6 +14,7 @@
 namespace carve {
 namespace {
 using Surface = CGAL::Surface_mesh<CGAL::Exact_predicates_inexact_constructions_kernel::Point_3>;
+
 /// Gives a mesh its volume back by an even offset of the vertices that are not held, along their normals.
 void restore_volume(Mesh& mesh, double volume, const std::vector<std::uint8_t>& held) {
   constexpr int kSteps = 4;  // of Newton's method
