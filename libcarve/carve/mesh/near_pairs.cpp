@@ -65,7 +65,7 @@ struct Lanes {
 class Finder {
  public:
   Finder(const Mesh& mesh, const VertexTriangles& around, std::span<const std::uint8_t> moved, double blur)
-      : mesh_(mesh), around_(around), moved_(moved), blur_(blur), plain_(mesh.positions.size()) {
+      : mesh_(mesh), moved_(moved), blur_(blur), plain_(mesh.positions.size()) {
     // Without a moved triangle around it a vertex only helps to find larger sheets.
     const bool few = !moved.empty() && std::ranges::count(moved, 0) > 7 * std::ssize(moved) / 8;
     parallel_ranges(0, static_cast<int>(plain_.size()), 1 << 12, [&](int first, int last) {
@@ -224,12 +224,11 @@ class Finder {
   bool side_by_side(int i, int j) const {
     const Triangle &a = mesh_.triangles[i], &b = mesh_.triangles[j];
     bool plain = false;  // without branches, which nothing could foretell
-    for (const int v : a) plain |= ((v == b[0]) | (v == b[1]) | (v == b[2])) & (plain_[v] != 0);
+    for (const int v : a) plain |= (int{v == b[0]} | int{v == b[1]} | int{v == b[2]}) & plain_[v];
     return plain;
   }
 
   const Mesh& mesh_;
-  const VertexTriangles& around_;
   const std::span<const std::uint8_t> moved_;
   const double blur_;
   std::vector<std::uint8_t> plain_;  // bytes: written by several threads

@@ -109,6 +109,7 @@ class Matcher {
     if (others.size() >= static_cast<std::size_t>(photometry_.options().images))
       others.resize(photometry_.options().images - 1);
     std::vector<Eigen::Matrix3d> lines;
+    lines.reserve(others.size());
     for (const int other : others) lines.push_back(fundamental(a.camera, photometry_.views()[other].camera));
     std::vector<Patch> found;
     for (const Feature& f : features_[view])
