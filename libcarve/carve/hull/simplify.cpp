@@ -26,7 +26,8 @@ struct ScaledDistance {
   std::array<double, 2> scale;
   std::array<std::int32_t, 2> low, high;
 
-  boost::optional<double> operator()(const Triangulation&, const Triangulation::Vertices_in_constraint_iterator& at) const {
+  boost::optional<double> operator()(const Triangulation&,
+                                     const Triangulation::Vertices_in_constraint_iterator& at) const {
     const auto before = boost::prior(at), after = boost::next(at);
     for (int k = 0; k < 2; ++k)
       if (const double x = (*at)->point()[k]; x == low[k] || x == high[k]) return boost::none;
