@@ -1,5 +1,3 @@
-#include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -7,6 +5,7 @@
 #include <ostream>
 
 #include "carve/mesh/neighbours.h"
+#include "carve/mesh/uv_jacobian.h"
 #include "eval/render.h"
 #include "eval/texture_scores.h"
 
@@ -31,20 +30,6 @@ std::int64_t count_charts(const TexturedMesh& model) {
   return count;
 }
 
-// From a triangle's own plane to the texture; positive determinant = face up.
-Eigen::Matrix2d jacobian(const TexturedMesh& model, std::size_t t) {
-  const Vec3& origin = model.mesh.positions[model.mesh.triangles[t][0]];
-  const Vec3 p = model.mesh.positions[model.mesh.triangles[t][1]] - origin;
-  const Vec3 q = model.mesh.positions[model.mesh.triangles[t][2]] - origin;
-  const Vec3 x = p.stableNormalized(), y = p.cross(q).cross(p).stableNormalized();
-  Eigen::Matrix2d world, texture;
-  world << p.dot(x), q.dot(x), p.dot(y), q.dot(y);
-  const auto& [a, b, c] = model.uv_triangles[t];
-  const Vec2 u = model.uvs[b] - model.uvs[a], v = model.uvs[c] - model.uvs[a];
-  texture << u.x(), v.x(), -u.y(), -v.y();  // v points down
-  return texture * world.inverse();
-}
-
 void score_distortion(const TexturedMesh& model, AtlasScores& scores) {
   struct Triangle2 {
     double area, stretch, shrink;  // squared norms of the Jacobian and of its inverse
@@ -52,11 +37,12 @@ void score_distortion(const TexturedMesh& model, AtlasScores& scores) {
   std::vector<Triangle2> all;
   double area = 0, texture_area = 0;
   for (std::size_t t = 0; t < model.mesh.triangles.size(); ++t) {
-    const auto& [a, b, c] = model.mesh.triangles[t];
-    const Vec3& origin = model.mesh.positions[a];
-    const double here = (model.mesh.positions[b] - origin).cross(model.mesh.positions[c] - origin).norm() / 2;
+    const auto& [i, k, l] = model.mesh.triangles[t];
+    const Vec3 &a = model.mesh.positions[i], &b = model.mesh.positions[k], &c = model.mesh.positions[l];
+    const double here = (b - a).cross(c - a).norm() / 2;
     if (here < 1e-14) continue;
-    const Eigen::Matrix2d j = jacobian(model, t);
+    const auto& [at_a, at_b, at_c] = model.uv_triangles[t];
+    const Eigen::Matrix2d j = uv_jacobian(a, b, c, model.uvs[at_a], model.uvs[at_b], model.uvs[at_c]);
     const double determinant = j.determinant();
     if (!(determinant > 1e-9)) {
       ++scores.flipped;

@@ -48,6 +48,11 @@ Raster<Vec2> seen_uvs(const TexturedMesh& model, const CameraAxes& axes, const W
   return uvs;
 }
 
+Rgba to_pixel(const Colour& colour) {
+  const auto byte = [](float value) { return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0F, 255.0F))); };
+  return {byte(colour[0]), byte(colour[1]), byte(colour[2]), 255};
+}
+
 Picture render(const TexturedMesh& model, const CameraAxes& axes, const Window& window, bool shaded) {
   const Seen seen = rasterise(model.mesh, axes, window);
   const Raster<Vec2> uvs = seen_uvs(model, axes, window, seen);
@@ -59,10 +64,7 @@ Picture render(const TexturedMesh& model, const CameraAxes& axes, const Window& 
     if (t < 0) continue;
     Colour colour = texture_at(model.texture, uvs.pixels[i]);
     if (shaded) colour *= static_cast<float>(0.65 + 0.35 * std::abs(normals[t].dot(light)));
-    const auto byte = [](float value) {
-      return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0F, 255.0F)));
-    };
-    picture.pixels[i] = {byte(colour[0]), byte(colour[1]), byte(colour[2]), 255};
+    picture.pixels[i] = to_pixel(colour);
   }
   return picture;
 }

@@ -7,6 +7,9 @@ namespace carve {
 /// Red, green, blue, 0 to 255, sRGB.
 using Colour = Eigen::Vector3f;
 
+/// Rounded, what lies beyond 0 and 255 cut off; opaque.
+Rgba to_pixel(const Colour& colour);
+
 /// The texture between its texels' centres (bilinear), its border repeated beyond it. \param uv  as in TexturedMesh
 Colour texture_at(const Picture& texture, const Vec2& uv);
 

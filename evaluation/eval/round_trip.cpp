@@ -144,11 +144,6 @@ std::vector<Seeing> see(const TexturedMesh& model, const ViewSet& views, const s
   return all;
 }
 
-Rgba pixel(const Colour& c) {
-  const auto byte = [](float value) { return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0F, 255.0F))); };
-  return {byte(c[0]), byte(c[1]), byte(c[2]), 255};
-}
-
 }  // namespace
 
 Picture differences(const TexturedMesh& model, const ViewSet& views) {
@@ -167,8 +162,8 @@ Picture differences(const TexturedMesh& model, const ViewSet& views) {
     for (int y = box.y0; y < box.y1; ++y)
       for (int x = box.x0; x < box.x1; ++x) {
         Rgba* row = &sheet(x - box.x0, top + y - box.y0);
-        if (s.view->drawing.labels(x, y) != Label::background) row[0] = pixel(s.drawn(x, y));
-        if (s.covered(x, y)) row[width] = pixel(s.rendered(x, y));
+        if (s.view->drawing.labels(x, y) != Label::background) row[0] = to_pixel(s.drawn(x, y));
+        if (s.covered(x, y)) row[width] = to_pixel(s.rendered(x, y));
         if (s.compared(x, y))
           row[(s.compared(x, y) == 2 ? 2 : 3) * width] =
               colour(Ramp::sequential, (s.rendered(x, y) - s.drawn(x, y)).norm(), kRange);

@@ -90,7 +90,7 @@ class Runner {
 
   void end(Running& run, std::size_t to_do) {
     const bool absent = !run.timed_out && left_out(results_, run.cell);
-    const std::string why = absent ? "not installed" : outcome(run);
+    const std::string why = absent ? kNotInstalled : outcome(run);
     if (!why.empty() && !absent) store_record(results_, run.cell, record_of(spec_, run.cell, why));
     --progress_.running;
     ++(why.empty() ? progress_.done : absent ? progress_.absent : progress_.failed);

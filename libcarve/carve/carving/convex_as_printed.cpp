@@ -3,18 +3,14 @@
 #include <algorithm>
 
 #include "carve/carving/row_hull.h"
+#include "carve/core/bounds.h"
 #include "carve/grid/shadow.h"
 
 namespace carve {
 namespace {
 
 Box box_of(const Mask& mask) {
-  Box box{mask.width, mask.height, 0, 0};
-  for (int y = 0; y < mask.height; ++y)
-    for (int x = 0; x < mask.width; ++x)
-      if (mask(x, y))
-        box = {std::min(box.x0, x), std::min(box.y0, y), std::max(box.x1, x + 1), std::max(box.y1, y + 1)};
-  return box;
+  return bounds(mask, [](std::uint8_t inside) { return inside != 0; });
 }
 
 bool is_convex(const Mask& mask) {

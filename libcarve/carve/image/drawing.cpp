@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "carve/core/bounds.h"
 #include "carve/core/error.h"
 #include "carve/core/options.h"
 #include "carve/image/labelling.h"
@@ -13,23 +14,6 @@ namespace {
 
 double stroke_width(const Picture& picture, const DrawingOptions& options) {
   return options.max_stroke.value_or(std::max(3.0, 0.02 * std::max(picture.width, picture.height)));
-}
-
-Box bounds(const Raster<Label>& labels) {
-  Box box{labels.width, labels.height, 0, 0};
-  const auto is_object = [](Label label) { return label != Label::background; };
-  for (int y = 0; y < labels.height; ++y) {
-    const Label* row = &labels(0, y);
-    const Label* end = row + labels.width;
-    const Label* first = std::find_if(row, end, is_object);
-    if (first == end) continue;
-    const auto last = std::find_if(std::make_reverse_iterator(end), std::make_reverse_iterator(first), is_object);
-    box.x0 = std::min(box.x0, static_cast<int>(first - row));
-    box.x1 = std::max(box.x1, static_cast<int>(last.base() - row));
-    box.y0 = std::min(box.y0, y);
-    box.y1 = y + 1;
-  }
-  return box;
 }
 
 std::string describe(const labelling::Ground& ground) {
@@ -64,7 +48,7 @@ Drawing understand_drawing(Picture picture, const DrawingOptions& options) {
   drawing.labels = Raster<Label>(picture.width, picture.height);
   std::transform(drawing.coverage.pixels.begin(), drawing.coverage.pixels.end(), drawing.labels.pixels.begin(),
                  [](int c) { return c >= 128 ? Label::surface : Label::background; });
-  drawing.bounds = bounds(drawing.labels);
+  drawing.bounds = bounds(drawing.labels, [](Label label) { return label != Label::background; });
   drawing.picture = std::move(picture);
   labelling::label_strokes(drawing, static_cast<int>(options.ink));
   return drawing;

@@ -8,12 +8,16 @@
 
 namespace carve {
 
+Eigen::Matrix3d intrinsics(const Camera& camera) {
+  Eigen::Matrix3d k;
+  k << camera.focal, 0, camera.principal.x(), 0, camera.focal, camera.principal.y(), 0, 0, 1;
+  return k;
+}
+
 Eigen::Matrix<double, 3, 4> projection(const Camera& camera) {
-  Eigen::Matrix3d intrinsics;
-  intrinsics << camera.focal, 0, camera.principal.x(), 0, camera.focal, camera.principal.y(), 0, 0, 1;
   Eigen::Matrix<double, 3, 4> pose;
   pose << camera.rotation, camera.translation;
-  return intrinsics * pose;
+  return intrinsics(camera) * pose;
 }
 
 Vec2 project(const Camera& camera, const Vec3& world) {

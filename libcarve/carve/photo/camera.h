@@ -24,6 +24,9 @@ struct Camera {
   bool operator==(const Camera&) const = default;
 };
 
+/// What takes camera axes to the picture, up to scale.
+Eigen::Matrix3d intrinsics(const Camera& camera);
+
 /// The 3x4 projection matrix P: the picture of world point X is P (X, 1), up to scale.
 Eigen::Matrix<double, 3, 4> projection(const Camera& camera);
 

@@ -10,7 +10,6 @@
 
 #include "carve/core/options.h"
 #include "carve/core/parallel.h"
-#include "carve/photo/point_files.h"
 #include "carve/photo/stereo.h"
 
 namespace carve {

@@ -62,16 +62,11 @@ std::vector<Feature> features_of(const PatchView& view) {
 
 // x' F x = 0 for pictures x of the first camera, x' of the second.
 Eigen::Matrix3d fundamental(const Camera& a, const Camera& b) {
-  const auto matrix = [](const Camera& c) {
-    Eigen::Matrix3d k;
-    k << c.focal, 0, c.principal.x(), 0, c.focal, c.principal.y(), 0, 0, 1;
-    return k;
-  };
   const Eigen::Matrix3d turn = b.rotation * a.rotation.transpose();
   const Vec3 t = b.translation - turn * a.translation;
   Eigen::Matrix3d cross;
   cross << 0, -t.z(), t.y(), t.z(), 0, -t.x(), -t.y(), t.x(), 0;
-  return matrix(b).inverse().transpose() * cross * turn * matrix(a).inverse();
+  return intrinsics(b).inverse().transpose() * cross * turn * intrinsics(a).inverse();
 }
 
 // Depth along the first ray where it is nearest to the second; negative if they are parallel.

@@ -16,8 +16,4 @@ OrientedPoints read_oriented_points(const std::filesystem::path& path);
 /// \throws IoError as read_oriented_points
 OrientedPoints read_colmap_points(const std::filesystem::path& path, std::span<const Photo> photos);
 
-/// Normals of planes through the nearest points, turned to the side that `towards` points to. Empty if there are fewer
-/// points than a plane is fitted to.
-OrientedPoints with_normals(const std::vector<Vec3>& positions, const std::vector<Vec3>& towards);
-
 }  // namespace carve

@@ -65,14 +65,15 @@ std::pair<Camera, Camera> rectified(const Camera& left, const Camera& right, con
   return both;
 }
 
-Eigen::Matrix3d intrinsics(const Camera& camera) {
-  Eigen::Matrix3d k;  // OpenCV's pixel centres lie at whole numbers
-  k << camera.focal, 0, camera.principal.x() - 0.5, 0, camera.focal, camera.principal.y() - 0.5, 0, 0, 1;
-  return k;
+// OpenCV's pixel centres lie at whole numbers.
+Eigen::Matrix3d opencv_intrinsics(Camera camera) {
+  camera.principal -= Vec2::Constant(0.5);
+  return intrinsics(camera);
 }
 
 cv::Mat homography(const Camera& from, const Camera& to) {
-  const Eigen::Matrix3d h = intrinsics(to) * to.rotation * from.rotation.transpose() * intrinsics(from).inverse();
+  const Eigen::Matrix3d h =
+      opencv_intrinsics(to) * to.rotation * from.rotation.transpose() * opencv_intrinsics(from).inverse();
   cv::Mat matrix(3, 3, CV_64F);
   for (int i = 0; i < 9; ++i) matrix.at<double>(i / 3, i % 3) = h(i / 3, i % 3);
   return matrix;

@@ -51,4 +51,8 @@ std::vector<DepthMap> depth_maps(std::span<const Photo> photos, const Vec3& low,
 OrientedPoints fuse(std::span<const DepthMap> maps, const Vec3& low, const Vec3& high,
                     const StereoOptions& options = {}, const Monitor& monitor = {});
 
+/// Normals of planes through the nearest points, turned to the side that `towards` points to. Empty if there are fewer
+/// points than a plane is fitted to.
+OrientedPoints with_normals(const std::vector<Vec3>& positions, const std::vector<Vec3>& towards);
+
 }  // namespace carve

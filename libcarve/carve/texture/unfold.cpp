@@ -7,13 +7,13 @@
 #include <CGAL/Surface_mesh_parameterization/parameterize.h>
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
 #include <span>
 
+#include "carve/mesh/uv_jacobian.h"
 #include "carve/texture/chart_uvs.h"
 
 namespace carve {
@@ -46,13 +46,14 @@ class Unfolding {
     const double before = distortion(triangles, [&](int uv) { return charts_.uvs[uv]; }).energy(1 / density);
     std::vector<int> uvs;
     const std::vector<Vec2> flat = conformal(triangles, uvs);
-    if (flat.empty()) return before;
-    for (std::size_t i = 0; i < uvs.size(); ++i) local_[uvs[i]] = static_cast<int>(i);
-    const Distortion after = distortion(triangles, [&](int uv) { return flat[local_[uv]]; });
+    double energy = before;
+    if (!flat.empty()) {
+      const Distortion after = distortion(triangles, [&](int uv) { return flat[local_[uv]]; });
+      const double scale = after.best_scale();
+      energy = std::min(before, after.energy(scale));
+      if (energy < before) take(uvs, flat, density * scale);
+    }
     for (const int i : uvs) local_[i] = -1;
-    const double scale = after.best_scale(), energy = after.energy(scale);
-    if (!(energy < before)) return before;
-    take(uvs, flat, density * scale);
     return energy;
   }
 
@@ -60,9 +61,7 @@ class Unfolding {
   // Places of the coordinates `uvs`; none if the chart is not a disk.
   std::vector<Vec2> conformal(std::span<const int> triangles, std::vector<int>& uvs) {
     Surface surface;
-    const bool built = build(triangles, surface, uvs);
-    for (const int i : uvs) local_[i] = -1;
-    if (!built) return {};
+    if (!build(triangles, surface, uvs)) return {};
     std::vector<Surface::Halfedge_index> borders;
     CGAL::Polygon_mesh_processing::extract_boundary_cycles(surface, std::back_inserter(borders));
     const auto count = [](auto size) { return static_cast<long>(size); };
@@ -100,18 +99,12 @@ class Unfolding {
   Distortion distortion(std::span<const int> triangles, const Place& place) const {
     Distortion sum;
     for (const int t : triangles) {
-      const Vec3& origin = mesh_.positions[mesh_.triangles[t][0]];
-      const Vec3 p = mesh_.positions[mesh_.triangles[t][1]] - origin,
-                 q = mesh_.positions[mesh_.triangles[t][2]] - origin;
-      const double area = p.cross(q).norm() / 2;
+      const auto& [i, k, l] = mesh_.triangles[t];
+      const Vec3 &a = mesh_.positions[i], &b = mesh_.positions[k], &c = mesh_.positions[l];
+      const double area = (b - a).cross(c - a).norm() / 2;
       if (area < 1e-14) continue;
-      const Vec3 x = p.normalized(), y = p.cross(q).cross(p).normalized();
-      Eigen::Matrix2d world, plane;
-      world << p.dot(x), q.dot(x), p.dot(y), q.dot(y);
-      const auto& [a, b, c] = charts_.triangles[t];
-      const Vec2 u = place(b) - place(a), v = place(c) - place(a);
-      plane << u.x(), v.x(), -u.y(), -v.y();
-      const Eigen::Matrix2d j = plane * world.inverse();
+      const auto& [at_a, at_b, at_c] = charts_.triangles[t];
+      const Eigen::Matrix2d j = uv_jacobian(a, b, c, place(at_a), place(at_b), place(at_c));
       if (!(j.determinant() > 0)) {
         sum.flipped = true;
         continue;
