@@ -104,7 +104,8 @@ void run_cell(const fs::path& results, const std::string& spec, const Cell& cell
   MethodInput input{.pictures = subject.drawings, .drawings = {}, .options = {}, .seed = cell.seed};
   apply(input.options, cell.settings);
   input.options.degrade.seed = static_cast<int>(cell.seed);
-  if (subject.model) input.pictures = synthesize(*subject.model, input.options.synthesize, input.options.degrade);
+  const std::string content = content_hash(subject);
+  if (subject.model) input.pictures = concept_art_of(results, *subject.model, content, input.options);
 
   const Method& method = *find_method(cell.arm);
   if (method.photos) {
@@ -131,7 +132,6 @@ void run_cell(const fs::path& results, const std::string& spec, const Cell& cell
   record.provenance = provenance();
   record.provenance.insert(output.provenance.begin(), output.provenance.end());
   if (subject.model) {
-    const std::string content = content_hash(subject);
     record.provenance[kReferenceKey] = content;
     measure_against(*subject.model, reference_of(results, *subject.model, content), output, input.options.evaluate,
                     record);

@@ -51,7 +51,8 @@ struct Overview {
   int runs = 0;
 };
 
-inline constexpr const char* kReferences = "references";   // folder below the results
+inline constexpr const char* kReferences = "references";  // folders below the results
+inline constexpr const char* kConceptArt = "concept_art";
 inline constexpr const char* kReferenceKey = "reference";  // in a record's provenance: the file's name without .ply
 inline constexpr const char* kRecordFile = "run.json";
 inline constexpr const char* kOverviewFile = "overview.json";
