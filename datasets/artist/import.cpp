@@ -48,12 +48,13 @@ int main(int argc, char** argv) {
                "carve-import");
   fs::path manifest = CARVE_ARTIST_MANIFEST, cache = default_cache(), out;
   std::vector<std::string> wanted;
-  bool list = false;
+  bool list = false, of_held_out = false;
   app.add_option("--manifest", manifest, "manifest.toml")->capture_default_str();
   app.add_option("--cache", cache, "the folder that fetch filled")->capture_default_str();
   app.add_option("-o,--out", out, "a model is written to OUT/NAME/NAME.obj");
   app.add_flag("--list", list, "print group, object, format and name of every model of the manifest");
-  app.add_option("models", wanted, "names; without any: all that are fetched");
+  app.add_flag("--held-out", of_held_out, "without names: the held-out models in place of all others");
+  app.add_option("models", wanted, "names; without any: all that are fetched and not held out");
 
   return run_program(app, argc, argv, [&] {
     const std::vector<Entry> entries = read_manifest(manifest);
@@ -68,7 +69,7 @@ int main(int argc, char** argv) {
         continue;
       }
       const bool named = std::find(wanted.begin(), wanted.end(), entry.name) != wanted.end();
-      if (!wanted.empty() && !named) continue;
+      if (wanted.empty() ? held_out(entry) != of_held_out : !named) continue;
       if (!fetched(entry, cache)) {
         if (named)
           throw IoError((cache / entry.name).string(), "not fetched (datasets/artist/fetch " + entry.name + ")");

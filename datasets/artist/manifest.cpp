@@ -78,7 +78,7 @@ Entry entry_of(const Table& table, const std::map<std::string, std::string>& gro
   e.object = table.text("object");
   e.package = table.text("package");
   if (!group_of.contains(e.package)) table.fail("no package " + e.package);
-  e.group = group_of.at(e.package);
+  e.group = table.has("group") ? table.text("group") : group_of.at(e.package);
   e.format = table.text("format");
   e.licence = table.text("licence");
   e.author = table.text("author");
@@ -111,7 +111,7 @@ std::vector<Entry> read_manifest(const std::filesystem::path& path) {
   static const std::set<std::string_view> package_keys = {"name", "kind", "version", "megabytes", "group", "sha256"};
   static const std::set<std::string_view> model_keys = {"name",    "object",  "package", "archive", "files", "format",
                                                         "licence", "author",  "up",      "front",   "turns", "objects",
-                                                        "frames",  "texture", "colours", "note"};
+                                                        "frames",  "texture", "colours", "note",    "group"};
   toml::table root;
   try {
     root = toml::parse(read_file(path), path.string());
