@@ -16,7 +16,7 @@ namespace carve::experiments {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::string_view kArtist = "artist/", kDrawing = "drawing/";
+constexpr std::string_view kArtist = "artist/", kHeldOut = "held_out/", kDrawing = "drawing/";
 
 fs::path folder_from(const char* variable, const char* otherwise) {
   const char* folder = std::getenv(variable);
@@ -25,7 +25,9 @@ fs::path folder_from(const char* variable, const char* otherwise) {
 fs::path artist_folder() { return folder_from("CARVE_ARTIST_MODELS", CARVE_DATA_FOLDER "/artist"); }
 fs::path drawing_folder() { return folder_from("CARVE_DRAWINGS", CARVE_DATA_FOLDER "/drawings"); }
 
-fs::path artist_file(const std::string& name) { return artist_folder() / name / (name + ".obj"); }
+fs::path held_out_folder() { return folder_from("CARVE_HELD_OUT_MODELS", CARVE_DATA_FOLDER "/held_out"); }
+
+fs::path model_file(const fs::path& folder, const std::string& name) { return folder / name / (name + ".obj"); }
 
 template <class Is>
 void add_folders(const fs::path& parent, std::string_view prefix, Is&& is, std::vector<std::string>& names) {
@@ -42,8 +44,15 @@ bool in_set(const std::string& set, const std::string& name) {
   if (set == "thesis") return thesis.contains(name);
   if (set == "procedural") return name.find('/') == std::string::npos;
   if (set == "artist") return name.starts_with(kArtist);
+  if (set == "held_out") return name.starts_with(kHeldOut);
   if (set == "drawing") return name.starts_with(kDrawing);
-  throw std::invalid_argument("models: unknown set:" + set + "; sets: thesis, procedural, artist, drawing");
+  throw std::invalid_argument("models: unknown set:" + set + "; sets: thesis, procedural, artist, held_out, drawing");
+}
+
+bool matches(const std::string& pattern, const std::string& name) {
+  if (pattern.starts_with("set:")) return in_set(pattern.substr(4), name);
+  if (name.starts_with(kHeldOut) && !pattern.starts_with(kHeldOut)) return false;
+  return fnmatch(pattern.c_str(), name.c_str(), 0) == 0;
 }
 
 }  // namespace
@@ -51,9 +60,11 @@ bool in_set(const std::string& set, const std::string& name) {
 std::vector<std::string> known_subjects() {
   std::vector<std::string> names;
   for (const ProceduralModel& model : procedural_models()) names.push_back(model.name);
-  add_folders(
-      artist_folder(), kArtist, [](const fs::path& p) { return fs::exists(artist_file(p.filename().string())); },
-      names);
+  const auto has_model = [](const fs::path& p) {
+    return fs::exists(model_file(p.parent_path(), p.filename().string()));
+  };
+  add_folders(artist_folder(), kArtist, has_model, names);
+  add_folders(held_out_folder(), kHeldOut, has_model, names);
   add_folders(
       drawing_folder(), kDrawing, [](const fs::path& p) { return fs::exists(p / "front.png"); }, names);
   return names;
@@ -66,7 +77,7 @@ std::vector<std::string> expand_subjects(const std::vector<std::string>& pattern
     const bool set = pattern.starts_with("set:");
     bool any = false;
     for (const std::string& name : known) {
-      if (set ? !in_set(pattern.substr(4), name) : fnmatch(pattern.c_str(), name.c_str(), 0) != 0) continue;
+      if (!matches(pattern, name)) continue;
       any = true;
       if (std::find(chosen.begin(), chosen.end(), name) == chosen.end()) chosen.push_back(name);
     }
@@ -77,7 +88,8 @@ std::vector<std::string> expand_subjects(const std::vector<std::string>& pattern
 }
 
 Subject make_subject(const std::string& name) {
-  if (name.starts_with(kArtist)) return {load_model(artist_file(name.substr(kArtist.size()))), {}};
+  if (name.starts_with(kArtist)) return {load_model(model_file(artist_folder(), name.substr(kArtist.size()))), {}};
+  if (name.starts_with(kHeldOut)) return {load_model(model_file(held_out_folder(), name.substr(kHeldOut.size()))), {}};
   if (!name.starts_with(kDrawing)) return {procedural_model(name), {}};
   Subject subject;
   for (const View view : kViews)

@@ -17,12 +17,14 @@ struct Subject {
 };
 
 /// Subjects are procedural models by name ("couch"), artists' models that were fetched and imported
-/// ("artist/dog_scopia", below $CARVE_ARTIST_MODELS) and hand-made drawings ("drawing/dragon", PNGs below
-/// $CARVE_DRAWINGS); experiments/reproduce makes both folders.
+/// ("artist/dog_scopia", below $CARVE_ARTIST_MODELS), those of them that nobody tunes on ("held_out/deer", below
+/// $CARVE_HELD_OUT_MODELS) and hand-made drawings ("drawing/dragon", PNGs below $CARVE_DRAWINGS); experiments/reproduce
+/// makes these folders.
 std::vector<std::string> known_subjects();
 
 /// Names, globs ("stairs_*") and sets ("set:thesis": axe, dog, head, robot; "set:procedural", "set:artist",
-/// "set:drawing"). A glob, a set, or a name with a folder may match nothing: not every machine has the artists' models.
+/// "set:held_out", "set:drawing"). What is held out is in no other set, and no glob matches it unless it says
+/// "held_out/". A glob, a set, or a name with a folder may match nothing: not every machine has the artists' models.
 /// \throws std::invalid_argument for a procedural model or a set that there is not
 std::vector<std::string> expand_subjects(const std::vector<std::string>& patterns);
 
