@@ -121,18 +121,18 @@ std::vector<std::string> specs_with_results(const Arguments& arguments) {
 int table_command(const Arguments& arguments) {
   for (const std::string& name : specs_with_results(arguments)) {
     const fs::path folder = arguments.results / name;
-    const auto [overview, records, complaints] = load_results(folder);
+    const auto [overview, runs, rows, complaints] = load_results(folder);
     fs::create_directories(folder / "tables");
     const auto write = [&](const std::string& file, const std::string& text) {
       write_file(folder / "tables" / file, [&](std::ostream& out) { out << text; });
     };
-    write("runs.csv", long_csv(records));
-    const TextTable means = summary(overview, records);
+    write("runs.csv", long_csv(runs));
+    const TextTable means = summary(overview, rows);
     write("summary.md", markdown(means));
     write("summary.tex", latex(means));
     std::string all = markdown(means) + "\n";
     for (const RunMetric& metric : overview.metrics) {
-      const Table table = make_table(overview, records, metric);
+      const Table table = make_table(overview, rows, metric);
       write(metric.name + ".md", to_markdown(table));
       write(metric.name + ".csv", to_csv(table));
       write(metric.name + ".tex", to_latex(table));
@@ -147,9 +147,10 @@ int table_command(const Arguments& arguments) {
 int plot_command(const Arguments& arguments) {
   for (const std::string& name : specs_with_results(arguments)) {
     const fs::path folder = arguments.results / name;
-    const auto [overview, records, complaints] = load_results(folder);
-    for (const RunMetric& metric : overview.metrics) plot(folder / "plots", metric.name, overview, records, metric);
-    std::cout << (folder / "plots").string() << ": " << overview.metrics.size()
+    const Results found = load_results(folder);
+    for (const RunMetric& metric : found.overview.metrics)
+      plot(folder / "plots", metric.name, found.overview, found.rows, metric);
+    std::cout << (folder / "plots").string() << ": " << found.overview.metrics.size()
               << " figures as SVG, PDF, PNG, with CSV and script\n";
   }
   return kDone;
@@ -160,7 +161,7 @@ int pictures_command(const Arguments& arguments) {
     const fs::path folder = arguments.results / name;
     const Results found = load_results(folder);
     for (const auto draw : {draw_heat_maps_of, draw_renders_of})
-      for (const fs::path& picture : draw(folder, found.overview, found.records)) std::cout << picture.string() << '\n';
+      for (const fs::path& picture : draw(folder, found.overview, found.rows)) std::cout << picture.string() << '\n';
   }
   return kDone;
 }
@@ -181,9 +182,10 @@ int compare_command(const Arguments& arguments) {
     const fs::path a = arguments.results / name, b = arguments.other / name;
     if (!fs::exists(b / kOverviewFile)) continue;
     any = true;
-    std::vector<std::string> complaints;
-    std::cout << compare(load_overview(a), load_records(a, complaints), load_records(b, complaints));
-    for (const std::string& complaint : complaints) std::cerr << "carve-experiments: " << complaint << '\n';
+    const Results left = load_results(a), right = load_results(b);
+    std::cout << compare(left.overview, left.records, right.records);
+    for (const Results* side : {&left, &right})
+      for (const std::string& said : side->complaints) std::cerr << "carve-experiments: " << said << '\n';
   }
   if (!any)
     throw IoError(arguments.other.string(), "has no results of a spec that " + arguments.results.string() + " has");

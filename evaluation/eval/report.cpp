@@ -43,15 +43,14 @@ std::string padded(std::string text, std::size_t width) {
   return text;
 }
 
-// A field with a comma, quote or line break is quoted (RFC 4180).
-std::string csv_field(const std::string& text) {
+}  // namespace
+
+std::string csv_text(const std::string& text) {
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
   return quoted + "\"";
 }
-
-}  // namespace
 
 void write_text(std::ostream& out, const ReportHead& head, const std::vector<Row>& rows) {
   out << "reference " << head.reference << ": " << head.vertices << " vertices, " << head.triangles
@@ -79,10 +78,10 @@ void write_csv(std::ostream& out, const ReportHead& head, const std::vector<Row>
   out << "compared,reference,metric,value,percent_of_diagonal,unit,better,samples,seed,definition\n";
   for (const Row& row : rows)
     for (const Score& score : row.scores)
-      out << csv_field(row.file) << ',' << csv_field(head.reference) << ',' << score.name() << ','
+      out << csv_text(row.file) << ',' << csv_text(head.reference) << ',' << score.name() << ','
           << (score.value ? digits(*score.value) : "") << ',' << (score.percent ? digits(*score.percent) : "") << ','
           << name(score.metric->unit) << ',' << name(score.metric->better) << ',' << head.options.samples << ','
-          << head.options.seed << ',' << csv_field(score.metric->formula) << '\n';
+          << head.options.seed << ',' << csv_text(score.metric->formula) << '\n';
 }
 
 std::string to_json(const ReportHead& head, const std::vector<Row>& rows) {

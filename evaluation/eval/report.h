@@ -22,6 +22,9 @@ struct ReportHead {
   CompareOptions options;
 };
 
+/// Text as a field of CSV, quoted where it must be (RFC 4180).
+std::string csv_text(const std::string& text);
+
 /// A line a metric with its definition; a column a compared file.
 void write_text(std::ostream& out, const ReportHead& head, const std::vector<Row>& rows);
 /// A line a compared file and metric. Empty = not defined for these inputs.

@@ -10,7 +10,7 @@
 #include "carve/core/file.h"
 #include "carve/image/read_image.h"
 #include "report/display_mesh.h"
-#include "report/published.h"
+#include "report/front.h"
 #include "report/table.h"
 #include "report/viewer.h"
 
@@ -64,14 +64,14 @@ void html_spec(std::ostream& out, const fs::path& results, const std::string& na
   const fs::path folder = results / name;
   const auto done = std::count_if(found.records.begin(), found.records.end(), [](const Record& r) { return r.done(); });
   out << "<section><h2 id=\"" << html_text(name) << "\">" << html_text(found.overview.title)
-      << "</h2>\n<p class=\"note\">" << done << " of " << found.overview.runs
+      << "</h2>\n<p class=\"note\">" << done << " of " << found.overview.runs.size()
       << " runs have a result; every run and metric: " << html_text(name)
-      << "/tables/runs.csv</p>\n<h3>Summary</h3>\n<div class=\"summary\">"
-      << html(summary(found.overview, found.records)) << "</div>"
+      << "/tables/runs.csv</p>\n<h3>Summary</h3>\n<div class=\"summary\">" << html(summary(found.overview, found.rows))
+      << "</div>"
       << "<p class=\"note\">" << kSummaryNote << "</p>\n";
   for (const RunMetric& metric : found.overview.metrics) {
     out << "<h3>" << html_text(metric.name) << "</h3><p class=\"note\">" << html_text(legend(metric))
-        << "</p>\n<div class=\"metric\"><div>" << to_html(make_table(found.overview, found.records, metric))
+        << "</p>\n<div class=\"metric\"><div>" << to_html(make_table(found.overview, found.rows, metric))
         << "</div><div>";
     if (const fs::path file = folder / "plots" / (metric.name + ".svg"); fs::exists(file))
       out << figure_of(found.overview.title + ": " + metric.name, "svg+xml", read_file(file));
@@ -83,8 +83,36 @@ void html_spec(std::ostream& out, const fs::path& results, const std::string& na
   out << "</section>\n";
 }
 
+std::string link_to(const std::string& anchor, const std::string& text) {
+  return "<a href=\"#" + html_text(anchor) + "\">" + html_text(text) + "</a>";
+}
+
+void html_front(std::ostream& out, const NamedResults& specs, const Front& front) {
+  for (const std::string& line : front.lines) out << "<p>" << html_text(line) << "</p>\n";
+  out << "<div class=\"front\"><div><h3>Experiments</h3>\n<div class=\"wide\"><table><thead><tr>";
+  for (std::size_t c = 0; c < front.runs.header.size(); ++c)
+    if (c != 1) out << "<th>" << html_text(front.runs.header[c]) << "</th>";
+  out << "</tr></thead>\n";
+  for (std::size_t i = 0; i < specs.size(); ++i) {
+    out << "<tr><td>" << link_to(specs[i].first, specs[i].second.overview.title) << "</td>";
+    for (std::size_t c = 2; c < front.runs.rows[i].size(); ++c) out << "<td>" << front.runs.rows[i][c].text << "</td>";
+    out << "</tr>\n";
+  }
+  out << "</table></div>\n<p>" << link_to("meshes", "Meshes in 3-D") << " · "
+      << link_to("published", "Published and measured") << " · " << link_to("provenance", "Where the figures come from")
+      << "</p></div>\n";
+  if (!front.thesis.empty()) out << "<div><h3>Tables and figures of the thesis</h3>\n<ul class=\"thesis\">\n";
+  for (const Front::Place& place : front.thesis) {
+    out << "<li>" << html_text(place.what) << ": ";
+    for (std::size_t i = 0; i < place.anchors.size(); ++i)
+      out << (i ? ", " : "") << link_to(place.anchors[i], place.anchors[i]);
+    out << "</li>\n";
+  }
+  out << (front.thesis.empty() ? "</div>\n" : "</ul></div></div>\n");
+}
+
 // What the figures rest on: the distinct values of the runs' provenance, of which times of day say nothing.
-void html_provenance(std::ostream& out, const std::vector<std::pair<std::string, Results>>& specs) {
+void html_provenance(std::ostream& out, const NamedResults& specs) {
   std::map<std::string, std::vector<std::string>> values;
   for (const auto& [name, found] : specs)
     for (const Record& record : found.records)
@@ -109,23 +137,20 @@ void html_provenance(std::ostream& out, const std::vector<std::pair<std::string,
 std::string html_report(const fs::path& results, const ReportOptions& options) {
   std::ostringstream out;
   out.imbue(std::locale::classic());
+  NamedResults specs;
+  for (const std::string& name : specs_in(results)) specs.emplace_back(name, load_results(results / name));
+  const std::vector<PublishedTable> published = published_tables(options.published, results);
   out << "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
          "content=\"width=device-width, initial-scale=1\"><title>Carve: results</title><link rel=\"icon\" "
          "href=\"data:,\"><style>"
-      << carve_style << "</style></head><body>\n<h1>Carve: results</h1>\n<nav><ul>";
-  std::vector<std::pair<std::string, Results>> specs;
-  for (const std::string& name : specs_in(results)) specs.emplace_back(name, load_results(results / name));
-  const std::vector<PublishedTable> published = published_tables(options.published, results);
-  out << "<li><a href=\"#meshes\">Meshes in 3-D</a></li>";
-  for (const auto& [name, found] : specs)
-    out << "<li><a href=\"#" << html_text(name) << "\">" << html_text(found.overview.title) << "</a></li>";
-  if (!published.empty()) out << "<li><a href=\"#published\">Published and measured</a></li>";
-  out << "<li><a href=\"#provenance\">Where the figures come from</a></li></ul></nav>\n"
-      << viewer_html(results, options.three, options.mesh_megabytes);
+      << carve_style << "</style></head><body>\n<h1>Carve: results</h1>\n";
+  html_front(out, specs, front_of(specs, published));
+  out << viewer_html(results, options.three, options.mesh_megabytes);
   for (const auto& [name, found] : specs) html_spec(out, results, name, found);
   if (!published.empty()) out << "<section><h2 id=\"published\">Published and measured</h2>\n";
   for (const PublishedTable& table : published) {
-    out << "<h3>" << html_text(table.title) << "</h3>\n" << html(table.table) << "<ul class=\"note\">";
+    out << "<h3 id=\"" << anchor_of(table) << "\">" << html_text(table.title) << "</h3>\n"
+        << html(table.table) << "<ul class=\"note\">";
     for (const std::string& note : table.notes) out << "<li>" << html_text(note) << "</li>";
     out << "</ul>\n";
   }
@@ -139,20 +164,25 @@ std::string markdown_report(const fs::path& results, const ReportOptions& option
   std::ostringstream out;
   out.imbue(std::locale::classic());
   out << "# Results\n\n";
-  for (const std::string& name : specs_in(results)) {
+  NamedResults specs;
+  for (const std::string& name : specs_in(results)) specs.emplace_back(name, load_results(results / name));
+  const std::vector<PublishedTable> published = published_tables(options.published, results);
+  const Front front = front_of(specs, published);
+  for (const std::string& line : front.lines) out << line << "\n\n";
+  out << markdown(front.runs) << "\n";
+  for (const auto& [name, found] : specs) {
     const fs::path folder = results / name;
-    const Results found = load_results(folder);
     out << "## " << found.overview.title << "\n\n"
-        << markdown(summary(found.overview, found.records)) << "\n"
+        << markdown(summary(found.overview, found.rows)) << "\n"
         << kSummaryNote << "\n\n";
     for (const RunMetric& metric : found.overview.metrics)
-      out << to_markdown(make_table(found.overview, found.records, metric)) << "\n";
+      out << to_markdown(make_table(found.overview, found.rows, metric)) << "\n";
     for (const char* part : {"plots", "heat_maps", "renders"})
       for (const fs::path& file : files_in(folder / part, ".png"))
         out << "![" << file.stem().string() << "](<" << name << "/" << part << "/" << file.filename().string()
             << ">)\n\n";
   }
-  for (const PublishedTable& table : published_tables(options.published, results)) {
+  for (const PublishedTable& table : published) {
     out << "## " << table.title << "\n\n" << markdown(table.table) << "\n";
     for (const std::string& note : table.notes) out << "- " << note << "\n";
     out << "\n";

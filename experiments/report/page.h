@@ -10,7 +10,8 @@ struct ReportOptions {
   double mesh_megabytes = 10;       // of the page, for the 3-D view
 };
 
-/// One self-contained HTML page of all results below a folder: a rotatable view of every run's mesh; per spec its
+/// One self-contained HTML page of all results below a folder: what ran and where each table and figure of the thesis
+/// is (report/front.h); a rotatable view of every run's mesh; per spec its
 /// summary, tables, figures (plots/*.svg), heat maps and renders (*.png, as WebP), embedded; published tables beside
 /// measured ones. Readable offline, on a phone and in print.
 std::string html_report(const std::filesystem::path& results, const ReportOptions& options);

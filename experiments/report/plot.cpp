@@ -8,6 +8,7 @@
 
 #include "carve/core/error.h"
 #include "carve/core/file.h"
+#include "eval/report.h"
 
 namespace carve::experiments {
 namespace bp = boost::process;

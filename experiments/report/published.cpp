@@ -80,11 +80,10 @@ class Measured {
  public:
   Measured(const std::string& table, const fs::path& results) {
     for (const std::string& name : specs_in(results))
-      if (const Overview overview = load_overview(results / name); overview.published.table == table) {
-        std::vector<std::string> complaints;
-        published_ = overview.published;
-        records_ = load_records(results / name, complaints);
-        title_ = overview.title;
+      if (Results found = load_results(results / name); found.overview.published.table == table) {
+        published_ = found.overview.published;
+        records_ = std::move(found.records);
+        title_ = found.overview.title;
       }
   }
   const Published& published() const { return published_; }

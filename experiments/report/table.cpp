@@ -6,6 +6,8 @@
 #include <set>
 #include <sstream>
 
+#include "eval/report.h"
+
 namespace carve::experiments {
 namespace {
 

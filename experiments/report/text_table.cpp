@@ -1,45 +1,141 @@
 #include "report/text_table.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
+#include <numeric>
+#include <span>
+#include <string_view>
 
 namespace carve::experiments {
 namespace {
 
-std::string latex_text(const std::string& text) {
+using Replacement = std::pair<std::string_view, std::string_view>;
+
+std::string replaced(const std::string& text, std::span<const Replacement> replacements) {
   std::string out;
-  for (const char c : text) {
-    if (std::string("_%&#$").find(c) != std::string::npos) out += '\\';
-    out += c;
+  for (std::size_t at = 0; at < text.size();) {
+    const auto found = std::find_if(replacements.begin(), replacements.end(), [&](const Replacement& r) {
+      return text.compare(at, r.first.size(), r.first) == 0;
+    });
+    out += found == replacements.end() ? std::string_view(text).substr(at, 1) : found->second;
+    at += found == replacements.end() ? 1 : found->first.size();
   }
-  const std::pair<std::string, std::string> signs[] = {
-      {"–", "--"}, {"\u00a0", "~"}, {"−", "$-$"}, {"↓", "$\\downarrow$"}, {"↑", "$\\uparrow$"}, {"×", "$\\times$"}};
-  for (const auto& [sign, code] : signs)
-    for (std::size_t at; (at = out.find(sign)) != std::string::npos;) out.replace(at, sign.size(), code);
   return out;
 }
 
-}  // namespace
+std::string latex_text(const std::string& text) {
+  static constexpr Replacement kCodes[] = {{"\\", "\\textbackslash{}"},
+                                           {"{", "\\{"},
+                                           {"}", "\\}"},
+                                           {"_", "\\_"},
+                                           {"%", "\\%"},
+                                           {"&", "\\&"},
+                                           {"#", "\\#"},
+                                           {"$", "\\$"},
+                                           {"^", "\\^{}"},
+                                           {"~", "\\~{}"},
+                                           {"<", "$<$"},
+                                           {">", "$>$"},
+                                           {"|", "$|$"},
+                                           {"–", "--"},
+                                           {"\u00a0", "~"},
+                                           {"−", "$-$"},
+                                           {"↓", "$\\downarrow$"},
+                                           {"↑", "$\\uparrow$"},
+                                           {"×", "$\\times$"}};
+  return replaced(text, kCodes);
+}
 
-std::string markdown(const TextTable& table) {
-  std::string out = "| " + joined(table.header, " | ") + " |\n|---|";
+std::string markdown_text(const std::string& text) {
+  static constexpr Replacement kCodes[] = {{"|", "\\|"}, {"*", "\\*"}, {"<", "&lt;"}};
+  return replaced(text, kCodes);
+}
+
+// A header's pieces, between which a line may end: words, and names at their underscores, slashes and dots.
+std::vector<std::string> pieces_of(const std::string& text) {
+  std::vector<std::string> pieces = {""};
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    pieces.back() += text[i];
+    const bool letter_next = i + 1 < text.size() && std::isalpha(static_cast<unsigned char>(text[i + 1])) != 0;
+    if (i + 1 < text.size() && (text[i] == ' ' || text[i] == '_' || text[i] == '/' || (text[i] == '.' && letter_next)))
+      pieces.emplace_back();
+  }
+  return pieces;
+}
+
+std::size_t letters(const std::string& text) {  // of UTF-8
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
+}
+
+std::size_t longest(const std::vector<std::string>& pieces) {
+  std::size_t most = 0;
+  for (const std::string& piece : pieces) most = std::max(most, letters(piece));
+  return most;
+}
+
+// What A4 in print holds in the page's type, and a two-column paper across both; the room between two columns.
+constexpr std::size_t kPageLetters = 112, kGap = 2;
+
+std::vector<std::size_t> widths_of(const TextTable& table) {
+  std::vector<std::size_t> widths;
+  for (std::size_t c = 0; c < table.header.size(); ++c) {
+    widths.push_back(c == 0 ? letters(table.header[c]) : longest(pieces_of(table.header[c])));
+    for (const auto& row : table.rows)
+      widths.back() = std::max(widths.back(), c == 0 ? letters(row[c].text) : longest(pieces_of(row[c].text)));
+    widths.back() += kGap;
+  }
+  return widths;
+}
+
+std::size_t width_of(const TextTable& table) {
+  const std::vector<std::size_t> widths = widths_of(table);
+  return std::accumulate(widths.begin(), widths.end(), std::size_t{0});
+}
+
+// As many columns in each part as fit beside the first, which all have; a part has one at least.
+std::vector<TextTable> parts_of(const TextTable& table) {
+  const std::vector<std::size_t> widths = widths_of(table);
+  std::vector<TextTable> parts;
+  std::size_t width = 0;
+  for (std::size_t c = 1; c < table.header.size(); ++c) {
+    if (parts.empty() || width + widths[c] > kPageLetters) {
+      parts.push_back({{table.header[0]}, {}, table.ruled});
+      for (const auto& row : table.rows) parts.back().rows.push_back({row[0]});
+      width = widths[0];
+    }
+    width += widths[c];
+    parts.back().header.push_back(table.header[c]);
+    for (std::size_t r = 0; r < table.rows.size(); ++r) parts.back().rows[r].push_back(table.rows[r][c]);
+  }
+  return parts;
+}
+
+std::string markdown_part(const TextTable& table) {
+  std::vector<std::string> header;
+  for (const std::string& column : table.header) header.push_back(markdown_text(column));
+  std::string out = "| " + joined(header, " | ") + " |\n|---|";
   for (std::size_t c = 1; c < table.header.size(); ++c) out += "---:|";
   out += "\n";
   for (const auto& row : table.rows) {
     out += "|";
-    for (const TextTable::Entry& entry : row) out += " " + (entry.best ? "**" + entry.text + "**" : entry.text) + " |";
+    for (const TextTable::Entry& entry : row) {
+      const std::string text = markdown_text(entry.text);
+      out += " " + (entry.best ? "**" + text + "**" : text) + " |";
+    }
     out += "\n";
   }
   return out;
 }
 
-std::string html(const TextTable& table) {
+std::string html_part(const TextTable& table) {
   std::string out = "<div class=\"wide\"><table><thead><tr>";
   for (const std::string& column : table.header) {
-    std::string text = html_text(column);
-    for (std::size_t at = 0; (at = text.find('_', at)) != std::string::npos; at += 6) text.insert(at + 1, "<wbr>");
-    out += "<th>" + text + "</th>";
+    out += "<th>";
+    const std::vector<std::string> pieces = pieces_of(column);
+    for (std::size_t i = 0; i < pieces.size(); ++i) out += (i ? "<wbr>" : "") + html_text(pieces[i]);
+    out += "</th>";
   }
   out += "</tr></thead>\n";
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
@@ -51,11 +147,25 @@ std::string html(const TextTable& table) {
   return out + "</table></div>\n";
 }
 
-std::string latex(const TextTable& table) {
+// A column's name in lines no longer than they must be.
+std::string latex_header(const std::string& text) {
+  const std::vector<std::string> pieces = pieces_of(text);
+  const std::size_t most = std::max<std::size_t>(8, longest(pieces));
+  std::vector<std::string> lines;
+  std::size_t length = 0;
+  for (const std::string& piece : pieces) {
+    if (lines.empty() || length + letters(piece) > most) lines.emplace_back(), length = 0;
+    length += letters(piece);
+    lines.back() += latex_text(piece);
+  }
+  return lines.size() == 1 ? lines[0] : "\\shortstack[r]{" + joined(lines, "\\\\") + "}";
+}
+
+std::string latex_part(const TextTable& table) {
   std::string out = "\\begin{tabular}{l" + std::string(table.header.size() - 1, 'r') + "}\n\\toprule\n";
   const auto line = [&](const std::vector<std::string>& parts) { out += joined(parts, " & ") + " \\\\\n"; };
-  std::vector<std::string> header;
-  for (const std::string& column : table.header) header.push_back(latex_text(column));
+  std::vector<std::string> header = {latex_text(table.header[0])};
+  for (std::size_t c = 1; c < table.header.size(); ++c) header.push_back(latex_header(table.header[c]));
   line(header);
   out += "\\midrule\n";
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
@@ -67,6 +177,36 @@ std::string latex(const TextTable& table) {
   }
   return out + "\\bottomrule\n\\end{tabular}\n";
 }
+
+std::string written(const TextTable& table, std::string (*write)(const TextTable&), const char* between) {
+  std::vector<std::string> parts;
+  for (const TextTable& part : fitted(table)) parts.push_back(write(part));
+  return joined(parts, between);
+}
+
+}  // namespace
+
+TextTable transposed(const TextTable& table) {
+  TextTable out{{table.header.front()}, {}};
+  for (const auto& row : table.rows) out.header.push_back(row.front().text);
+  for (std::size_t c = 1; c < table.header.size(); ++c) {
+    out.rows.push_back({{table.header[c]}});
+    for (const auto& row : table.rows) out.rows.back().push_back(row[c]);
+  }
+  return out;
+}
+
+std::vector<TextTable> fitted(const TextTable& table) {
+  const TextTable other = transposed(table);
+  const std::size_t width = width_of(table), other_width = width_of(other);
+  if (width <= kPageLetters) return {table};
+  if (other_width <= kPageLetters) return {other};
+  return parts_of(width <= other_width ? table : other);
+}
+
+std::string markdown(const TextTable& table) { return written(table, markdown_part, "\n"); }
+std::string html(const TextTable& table) { return written(table, html_part, ""); }
+std::string latex(const TextTable& table) { return written(table, latex_part, "\n\n"); }
 
 std::string short_text(double value) {
   if (!std::isfinite(value)) return "–";
@@ -92,13 +232,6 @@ std::string html_text(const std::string& text) {
   for (const char c : text)
     out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c);
   return out;
-}
-
-std::string csv_text(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
 }
 
 std::string joined(const std::vector<std::string>& parts, const std::string& between) {

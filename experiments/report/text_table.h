@@ -16,6 +16,13 @@ struct TextTable {
   std::size_t ruled = static_cast<std::size_t>(-1);  // the row that a line stands above, as before means
 };
 
+/// Rows as columns: what stood in the first column is the header, and the other way round.
+TextTable transposed(const TextTable& table);
+
+/// The table as it fits a page's width: as it is; if it is too wide, transposed; if both are, the narrower one in parts
+/// that stand below each other. Every format below is written of these parts.
+std::vector<TextTable> fitted(const TextTable& table);
+
 std::string markdown(const TextTable& table);
 std::string html(const TextTable& table);
 std::string latex(const TextTable& table);  // a tabular for booktabs
@@ -27,8 +34,6 @@ std::string exact_text(double value, const char* otherwise = "");
 
 /// Text as it may stand in an HTML element or attribute.
 std::string html_text(const std::string& text);
-/// Text as a field of CSV, quoted where it must be.
-std::string csv_text(const std::string& text);
 std::string joined(const std::vector<std::string>& parts, const std::string& between);
 
 }  // namespace carve::experiments

@@ -20,7 +20,6 @@
 #include "run/metrics.h"
 #include "run/models.h"
 #include "run/photo_methods.h"
-#include "run/provenance.h"
 #include "run/reference.h"
 #include "run/runner.h"
 
@@ -129,7 +128,6 @@ void run_cell(const fs::path& results, const std::string& spec, const Cell& cell
   record.metrics["cpu_seconds"] = static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
   record_times(output.times, record);
 
-  record.provenance = provenance();
   record.provenance.insert(output.provenance.begin(), output.provenance.end());
   if (subject.model) {
     record.provenance[kReferenceKey] = content;

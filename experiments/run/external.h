@@ -4,10 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "store/record.h"
+
 namespace carve::experiments {
 
 /// A program that a method needs is not on the PATH: its runs have no result, and nothing failed.
-inline constexpr const char* kNotInstalled = "not installed";
 class NotInstalled : public std::runtime_error {
  public:
   explicit NotInstalled(const std::string& program) : std::runtime_error(kNotInstalled + (": " + program)) {}

@@ -1,5 +1,7 @@
 #include "run/plan.h"
 
+#include <set>
+
 #include "run/hash.h"
 #include "run/metrics.h"
 #include "run/models.h"
@@ -22,10 +24,23 @@ std::vector<Settings> combinations(const Spec& spec) {
   return all;
 }
 
+// Those that a method follows: it does not follow what it states itself.
+Settings followed(Settings swept, const MethodSpec& method) {
+  std::erase_if(swept, [&](const auto& entry) { return method.settings.contains(entry.first); });
+  return swept;
+}
+
 std::string folder_of(std::string text) {
   for (char& c : text)
     if (c == '/') c = '_';
   return text;
+}
+
+// "Grid size against time (Fig. 4.10)"
+std::string heading_of(const Spec& spec) {
+  std::string thesis;
+  for (const std::string& what : spec.thesis) thesis += (thesis.empty() ? "" : ", ") + what;
+  return thesis.empty() ? spec.title : spec.title + " (" + thesis + ")";
 }
 
 }  // namespace
@@ -35,8 +50,11 @@ std::vector<Cell> plan(const Spec& spec) {
   const std::vector<Settings> sweeps = combinations(spec);
   for (const std::string& model : expand_subjects(spec.models)) {
     const std::string content = content_hash(make_subject(model));
-    for (const Settings& swept : sweeps)
-      for (const MethodSpec& method : spec.methods)
+    std::set<std::pair<std::string, Settings>> planned;
+    for (const Settings& combination : sweeps)
+      for (const MethodSpec& method : spec.methods) {
+        const Settings swept = followed(combination, method);
+        if (!planned.emplace(method.name, swept).second) continue;
         for (const unsigned seed : spec.seeds) {
           Cell cell{.model = model, .method = method.name, .arm = method.arm, .swept = swept, .seed = seed};
           cell.settings = spec.options;
@@ -54,14 +72,16 @@ std::vector<Cell> plan(const Spec& spec) {
                         .hex();
           cells.push_back(std::move(cell));
         }
+      }
   }
   return cells;
 }
 
 Overview overview(const Spec& spec, const std::vector<Cell>& cells) {
   Overview o{.spec = spec.name,
-             .title = spec.title,
+             .title = heading_of(spec),
              .baseline = spec.baseline,
+             .thesis = spec.thesis,
              .models = expand_subjects(spec.models),
              .methods = {},
              .sweep = {},
@@ -70,7 +90,8 @@ Overview overview(const Spec& spec, const std::vector<Cell>& cells) {
              .metrics = {},
              .heat_map_range = spec.heat_map_range,
              .published = spec.published,
-             .runs = static_cast<int>(cells.size())};
+             .runs = {}};
+  for (const Cell& cell : cells) o.runs.push_back(cell.path.string());
   for (const std::string& name : spec.metrics) {
     if (name == kEveryStage)  // those known here in their order; the others when results are read
       for (const RunMetric& metric : metrics())

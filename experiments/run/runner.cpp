@@ -13,6 +13,7 @@
 #include "carve/core/file.h"
 #include "run/die_with_parent.h"
 #include "run/external.h"
+#include "run/provenance.h"
 
 namespace carve::experiments {
 namespace bp = boost::process;
@@ -170,7 +171,8 @@ Record record_of(const std::string& spec, const Cell& cell, const std::string& s
           .status = status,
           .swept = cell.swept,
           .settings = cell.settings,
-          .seed = cell.seed};
+          .seed = cell.seed,
+          .provenance = provenance()};
 }
 
 std::string cell_argument(const std::string& spec, const Cell& cell) {

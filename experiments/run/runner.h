@@ -32,7 +32,7 @@ std::optional<Record> finished(const std::filesystem::path& results, const Cell&
 /// The run said that a program it needs is not installed (run/external.h).
 bool left_out(const std::filesystem::path& results, const Cell& cell);
 void store_record(const std::filesystem::path& results, const Cell& cell, const Record& record);
-/// A record with a cell's parameters and nothing measured yet.
+/// A record with a cell's parameters, of this program here and now, and nothing measured yet.
 Record record_of(const std::string& spec, const Cell& cell, const std::string& status);
 
 /// A cell as the argument its process is given, and back.

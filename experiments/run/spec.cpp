@@ -40,6 +40,8 @@ class Reader {
   void read_entry(std::string_view key, const toml::node& node) {
     if (key == "title")
       spec_.title = text(node);
+    else if (key == "thesis")
+      read_thesis(node);
     else if (key == "baseline")
       spec_.baseline = text(node);
     else if (key == "models")
@@ -148,6 +150,13 @@ class Reader {
   }
   void read_sweep(const toml::node& node) { sweep(node, ""); }
 
+  void read_thesis(const toml::node& node) {
+    spec_.thesis = texts(node);
+    for (const std::string& what : spec_.thesis)
+      if (!what.starts_with("Fig. ") && !what.starts_with("Table ") && !what.starts_with("Section "))
+        fail(node, "thesis must name a Fig., a Table or a Section, got " + what);
+  }
+
   void read_metrics(const toml::node& node) {
     spec_.metrics = texts(node);
     for (const std::string& name : spec_.metrics)
@@ -244,6 +253,10 @@ class Reader {
     if (spec_.title.empty()) spec_.title = spec_.name;
     check_method(spec_.baseline, "baseline");
     check_method(spec_.published.method, "published.method");
+    for (const auto& [field, values] : spec_.sweep)
+      if (std::all_of(spec_.methods.begin(), spec_.methods.end(),
+                      [&](const MethodSpec& m) { return m.settings.contains(field); }))
+        fail(*table.get("sweep"), "every method states " + field + " itself: nothing is left to sweep");
   }
 
   void check_method(const std::string& name, const std::string& key) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "carve/core/error.h"
 #include "carve/core/file.h"
@@ -36,6 +37,7 @@ requires std::is_same_v<std::remove_const_t<O>, Overview>
 void visit(O& o, Visitor&& field) {
   field("spec", o.spec);
   field("title", o.title);
+  field("thesis", o.thesis);
   field("baseline", o.baseline);
   field("models", o.models);
   field("methods", o.methods);
@@ -160,13 +162,49 @@ void name_stages(Overview& overview, const std::vector<Record>& records) {
   overview.metrics = std::move(named);
 }
 
+// What an earlier text of the spec left behind must not stand among the runs of this one.
+void leave_out_others(Results& results) {
+  const std::set<std::string> runs(results.overview.runs.begin(), results.overview.runs.end());
+  const std::size_t others = std::erase_if(results.records, [&](const Record& r) { return !runs.contains(r.folder); });
+  if (others > 0)
+    results.complaints.push_back(results.overview.spec + ": " + std::to_string(others) +
+                                 " runs left out that the spec no longer has");
+}
+
+std::vector<Record> in_every_row(std::vector<Record> records, const std::vector<std::string>& sweep) {
+  for (const std::string& field : sweep) {
+    std::set<std::string> values;
+    for (const Record& record : records)
+      if (const auto found = record.swept.find(field); found != record.swept.end()) values.insert(found->second);
+    std::vector<Record> all;
+    for (const Record& record : records) {
+      if (record.swept.contains(field) || values.empty()) {
+        all.push_back(record);
+        continue;
+      }
+      for (const std::string& value : values) {
+        all.push_back(record);
+        all.back().swept[field] = value;
+      }
+    }
+    records = std::move(all);
+  }
+  return records;
+}
+
 }  // namespace
 
 Results load_results(const fs::path& folder) {
   Results results;
   results.overview = load_overview(folder);
   results.records = load_records(folder, results.complaints);
+  leave_out_others(results);
   name_stages(results.overview, results.records);
+  std::erase_if(results.overview.sweep, [&](const std::string& field) {  // of which no run is there yet
+    return std::none_of(results.records.begin(), results.records.end(),
+                        [&](const Record& r) { return r.swept.contains(field); });
+  });
+  results.rows = in_every_row(results.records, results.overview.sweep);
   return results;
 }
 

@@ -35,6 +35,9 @@ struct Record {
   bool done() const { return status == "done"; }
 };
 
+/// How the status of a run begins that needs a program which is not installed.
+inline constexpr const char* kNotInstalled = "not installed";
+
 /// The published table that a spec measures again: papers/published/TABLE.csv, whose rows are our models or methods.
 struct Published {
   std::string table, method;  // the method whose runs are set beside it, unless the rows are methods
@@ -44,11 +47,12 @@ struct Published {
 /// What a spec's results are about (overview.json beside its runs), so that tables and plots need nothing else.
 struct Overview {
   std::string spec, title, baseline;
+  std::vector<std::string> thesis;  // what of the thesis it makes again: "Table 4.3"
   std::vector<std::string> models, methods, sweep, heat_map_models, render_models;  // in the spec's order
   std::vector<RunMetric> metrics;
   double heat_map_range = 2;
   Published published = {};
-  int runs = 0;
+  std::vector<std::string> runs = {};  // their folders, relative to the results
 };
 
 inline constexpr const char* kReferences = "references";  // folders below the results
@@ -67,10 +71,11 @@ Overview overview_from_json(const std::string& json, const std::string& path);
 std::vector<Record> load_records(const std::filesystem::path& folder, std::vector<std::string>& complaints);
 Overview load_overview(const std::filesystem::path& folder);
 
-/// All that a spec's runs left in its folder; kEveryStage has become the stages that any run had.
+/// What the runs of a spec left in its folder; kEveryStage has become the stages that any of them had.
 struct Results {
   Overview overview;
-  std::vector<Record> records;
+  std::vector<Record> records;  // a run each; those that the spec no longer has are left out
+  std::vector<Record> rows;     // the same, a run that states a swept field itself once for every value of that field
   std::vector<std::string> complaints;
 };
 Results load_results(const std::filesystem::path& folder);
