@@ -12,6 +12,7 @@
 #include "report/table.h"
 #include "run/cell.h"
 #include "run/heat_maps.h"
+#include "run/models.h"
 #include "run/provenance.h"
 #include "run/renders.h"
 #include "run/runner.h"
@@ -46,9 +47,18 @@ std::string clock_text(double seconds) {
   return std::to_string(whole / 60) + ":" + (whole % 60 < 10 ? "0" : "") + std::to_string(whole % 60);
 }
 
+// Models that a spec names and this machine lacks must not be missed in silence.
+void tell_missing(const Spec& spec) {
+  for (const std::string& pattern : spec.models)
+    if (expand_subjects({pattern}).empty())
+      std::cerr << "carve-experiments: " << spec.name << ": this machine has no model " << pattern
+                << " (datasets/prepare makes them); left out\n";
+}
+
 int plan_command(const Arguments& arguments) {
   for (const fs::path& path : arguments.specs) {
     const Spec spec = read_spec(path);
+    tell_missing(spec);
     const std::vector<Cell> cells = plan(spec);
     int todo = 0;
     for (const Cell& cell : cells) {
@@ -67,6 +77,7 @@ int run_command(const Arguments& arguments) {
   std::vector<Spec> specs;  // all are read first: what is wrong with the last one is said at once
   for (const fs::path& path : arguments.specs) specs.push_back(read_spec(path));
   for (const Spec& spec : specs) {
+    tell_missing(spec);
     const std::vector<Cell> all = plan(spec);
     const std::vector<Cell> cells = shard_of(all, arguments.shard);
     fs::create_directories(arguments.results / spec.name);

@@ -57,7 +57,7 @@ std::vector<std::string> commits_of(const NamedResults& specs) {
       const auto commit = record.provenance.find("commit"), dirty = record.provenance.find("dirty");
       if (commit == record.provenance.end()) continue;
       const bool changed = dirty != record.provenance.end() && dirty->second == "yes";
-      const std::string text = commit->second.substr(0, kShort) + (changed ? " with changes that it has not" : "");
+      const std::string text = commit->second.substr(0, kShort) + (changed ? " and changes not committed" : "");
       if (std::find(commits.begin(), commits.end(), text) == commits.end()) commits.push_back(text);
     }
   return commits;

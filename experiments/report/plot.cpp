@@ -152,14 +152,16 @@ std::string curves_of(const Data& data, const Overview& overview, const std::str
   std::size_t coloured = 0;
   for (std::size_t m = 0; m < count; ++m) {
     const bool base = overview.methods[m] == overview.baseline;
-    const std::string colour = base ? "rgb '#8c8c8c'" : "rgb colour[" + std::to_string(coloured++ % 7 + 1) + "]";
+    const std::string colour = base ? "rgb '#8c8c8c'" : "rgb colour[" + std::to_string(coloured % 7 + 1) + "]";
+    const std::size_t shape = (coloured + coloured / 7) % 7 + 4;  // no two methods have both colour and shape in common
+    coloured += !base;
     out << (m ? ", \\\n    " : "") << (m ? "''" : "'" + name + ".csv'") << " skip 1 using ";
     if (data.lines)
-      out << "1:" << m + 2 << " with linespoints lw 2 pt " << m % 7 + 4 << " dt " << m % 5 + 1 << " lc " << colour;
+      out << "1:" << m + 2 << " with linespoints lw 2 pt " << shape << " dt " << m % 5 + 1 << " lc " << colour;
     else if (data.dots)
       out << m + 2 << ":($0 + "
           << (static_cast<double>(m) - (static_cast<double>(count) - 1) / 2) * 0.6 / static_cast<double>(count)
-          << ") with points pt " << m % 7 + 4 << " ps 0.9 lw 1.5 lc " << colour;
+          << ") with points pt " << shape << " ps 0.9 lw 1.5 lc " << colour;
     else
       out << m + 2 << ":xtic(1) lc " << colour;
     out << " title " << quoted(overview.methods[m]);

@@ -150,6 +150,7 @@ std::string change_text(double value, double base) {
     std::snprintf(text, sizeof text, " (×\u00a0%.0f)", value / base);
     return text;
   }
+  if (std::abs(percent) < 0.05) return " (0.0\u00a0%)";  // not "-0.0"
   std::snprintf(text, sizeof text, std::abs(percent) < 9.95 ? " (%+.1f\u00a0%%)" : " (%+.0f\u00a0%%)", percent);
   return text;
 }

@@ -82,8 +82,7 @@ std::vector<std::size_t> widths_of(const TextTable& table) {
   std::vector<std::size_t> widths;
   for (std::size_t c = 0; c < table.header.size(); ++c) {
     widths.push_back(c == 0 ? letters(table.header[c]) : longest(pieces_of(table.header[c])));
-    for (const auto& row : table.rows)
-      widths.back() = std::max(widths.back(), c == 0 ? letters(row[c].text) : longest(pieces_of(row[c].text)));
+    for (const auto& row : table.rows) widths.back() = std::max(widths.back(), letters(row[c].text));
     widths.back() += kGap;
   }
   return widths;
@@ -94,20 +93,41 @@ std::size_t width_of(const TextTable& table) {
   return std::accumulate(widths.begin(), widths.end(), std::size_t{0});
 }
 
-// As many columns in each part as fit beside the first, which all have; a part has one at least.
-std::vector<TextTable> parts_of(const TextTable& table) {
-  const std::vector<std::size_t> widths = widths_of(table);
-  std::vector<TextTable> parts;
+// The columns that parts begin with, each part no wider than `limit` if it has more than one column beside the first.
+std::vector<std::size_t> cuts_of(const std::vector<std::size_t>& widths, std::size_t limit) {
+  std::vector<std::size_t> cuts;
   std::size_t width = 0;
-  for (std::size_t c = 1; c < table.header.size(); ++c) {
-    if (parts.empty() || width + widths[c] > kPageLetters) {
-      parts.push_back({{table.header[0]}, {}, table.ruled});
-      for (const auto& row : table.rows) parts.back().rows.push_back({row[0]});
+  for (std::size_t c = 1; c < widths.size(); ++c) {
+    if (cuts.empty() || width + widths[c] > limit) {
+      cuts.push_back(c);
       width = widths[0];
     }
     width += widths[c];
-    parts.back().header.push_back(table.header[c]);
-    for (std::size_t r = 0; r < table.rows.size(); ++r) parts.back().rows[r].push_back(table.rows[r][c]);
+  }
+  return cuts;
+}
+
+// As few parts as the page allows, of about the same width; all have the first column.
+std::vector<TextTable> parts_of(const TextTable& table) {
+  const std::vector<std::size_t> widths = widths_of(table);
+  std::vector<std::size_t> cuts = cuts_of(widths, kPageLetters);
+  for (std::size_t limit = kPageLetters; limit > 0; --limit) {
+    std::vector<std::size_t> narrower = cuts_of(widths, limit);
+    if (narrower.size() > cuts.size()) break;
+    cuts = std::move(narrower);
+  }
+  cuts.push_back(widths.size());
+  std::vector<TextTable> parts;
+  for (std::size_t p = 0; p + 1 < cuts.size(); ++p) {
+    TextTable part{{table.header[0]}, {}, table.ruled};
+    part.header.insert(part.header.end(), table.header.begin() + static_cast<std::ptrdiff_t>(cuts[p]),
+                       table.header.begin() + static_cast<std::ptrdiff_t>(cuts[p + 1]));
+    for (const auto& row : table.rows) {
+      part.rows.push_back({row[0]});
+      part.rows.back().insert(part.rows.back().end(), row.begin() + static_cast<std::ptrdiff_t>(cuts[p]),
+                              row.begin() + static_cast<std::ptrdiff_t>(cuts[p + 1]));
+    }
+    parts.push_back(std::move(part));
   }
   return parts;
 }

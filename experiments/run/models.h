@@ -24,8 +24,8 @@ std::vector<std::string> known_subjects();
 
 /// Names, globs ("stairs_*") and sets ("set:thesis": axe, dog, head, robot; "set:procedural", "set:artist",
 /// "set:held_out", "set:drawing"). What is held out is in no other set, and no glob matches it unless it says
-/// "held_out/". A glob, a set, or a name with a folder may match nothing: not every machine has the artists' models.
-/// \throws std::invalid_argument for a procedural model or a set that there is not
+/// "held_out/". A set, or what has a folder in its name, may match nothing: not every machine has the artists' models.
+/// \throws std::invalid_argument for procedural models or a set that there are not
 std::vector<std::string> expand_subjects(const std::vector<std::string>& patterns);
 
 /// \throws std::invalid_argument if there is none; IoError if its files cannot be read

@@ -10,6 +10,7 @@
 #include "carve/core/file.h"
 #include "run/methods.h"
 #include "run/metrics.h"
+#include "run/models.h"
 #include "run/settings.h"
 
 namespace carve::experiments {
@@ -45,7 +46,7 @@ class Reader {
     else if (key == "baseline")
       spec_.baseline = text(node);
     else if (key == "models")
-      spec_.models = texts(node);
+      spec_.models = models(node);
     else if (key == "metrics")
       read_metrics(node);
     else if (key == "seeds")
@@ -59,7 +60,7 @@ class Reader {
     else if (key == "heat_map")
       read_heat_map(node);
     else if (key == "renders")
-      spec_.render_models = texts(node);
+      spec_.render_models = models(node);
     else if (key == "published")
       read_published(node);
     else if (key == "method")
@@ -83,17 +84,23 @@ class Reader {
     if (node.is_string()) return *node.value<std::string>();
     if (node.is_boolean()) return *node.value<bool>() ? "on" : "off";
     if (!node.is_integer() && !node.is_floating_point()) fail(node, "must be a number, a string, true or false");
+    return node.is_integer() ? text_of(*node.value<std::int64_t>()) : text_of(*node.value<double>());
+  }
+
+  template <class Number>
+  static std::string text_of(Number number) {
     char digits[32];
-    char* const end = node.is_integer() ? std::to_chars(digits, std::end(digits), *node.value<std::int64_t>()).ptr
-                                        : std::to_chars(digits, std::end(digits), *node.value<double>()).ptr;
-    return {digits, end};
+    return {digits, std::to_chars(digits, std::end(digits), number).ptr};
   }
 
   template <class Convert>
   auto list(const toml::node& node, Convert&& convert) const {
     if (!node.is_array()) fail(node, "must be a list");
     std::vector<decltype(convert(node))> all;
-    for (const toml::node& item : *node.as_array()) all.push_back(convert(item));
+    for (const toml::node& item : *node.as_array()) {
+      all.push_back(convert(item));
+      if (std::count(all.begin(), all.end(), all.back()) > 1) fail(item, "is there twice");
+    }
     return all;
   }
 
@@ -101,10 +108,21 @@ class Reader {
     return list(node, [this](const toml::node& item) { return text(item); });
   }
 
+  std::vector<std::string> models(const toml::node& node) const {
+    return list(node, [this](const toml::node& item) {
+      try {
+        expand_subjects({text(item)});
+      } catch (const std::invalid_argument& error) {
+        fail(item, error.what());
+      }
+      return text(item);
+    });
+  }
+
   double number(const toml::node& node, double low, double high, const char* name) const {
     const auto number = node.value<double>();
     if (!number || !(*number >= low && *number <= high))
-      fail(node, std::string(name) + " must be in [" + std::to_string(low) + ", " + std::to_string(high) + "]");
+      fail(node, std::string(name) + " must be in [" + text_of(low) + ", " + text_of(high) + "]");
     return *number;
   }
 
@@ -144,6 +162,7 @@ class Reader {
         continue;
       }
       const auto values = list(item, [this](const toml::node& v) { return value(v); });
+      if (values.empty()) fail(item, field + " needs a value to sweep");
       for (const std::string& v : values) check_setting(item, field, v);
       spec_.sweep.emplace_back(field, values);
     }
@@ -184,7 +203,7 @@ class Reader {
   void read_heat_map(const toml::node& node) {
     for (const auto& [key, item] : table(node)) {
       if (key.str() == "models")
-        spec_.heat_map_models = texts(item);
+        spec_.heat_map_models = models(item);
       else if (key.str() == "range")
         spec_.heat_map_range = number(item, 1e-6, 1e3, "range");
       else

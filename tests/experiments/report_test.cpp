@@ -1,11 +1,13 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <sstream>
 
 #include "carve/core/file.h"
 #include "carve/surface/marching_cubes.h"
 #include "report/compare.h"
 #include "report/display_mesh.h"
+#include "report/front.h"
 #include "report/table.h"
 #include "shapes.h"
 #include "store/record.h"
@@ -32,6 +34,17 @@ Overview overview() {
   o.models = {"zebra", "ant"};
   o.metrics = {{"error", "what it is", "%", Direction::lower}};
   return o;
+}
+
+// Results on disk as a spec "s" leaves them, read back.
+Results stored(const TemporaryFolder& folder, Overview overview, const std::vector<Record>& records) {
+  for (const Record& r : records) {
+    overview.runs.push_back("s/" + r.model + "/" + r.method + "/run " + text_of(r.swept));
+    std::filesystem::create_directories(folder / overview.runs.back());
+    write_file(folder / overview.runs.back() / kRecordFile, [&](std::ostream& out) { out << to_json(r); });
+  }
+  write_file(folder / "s" / kOverviewFile, [&](std::ostream& out) { out << to_json(overview); });
+  return load_results(folder / "s");
 }
 
 TEST(Statistics, SignTestIsTheBinomialTail) {
@@ -94,6 +107,76 @@ TEST(Summary, ARowAMethodAColumnAMetricWithTheChangeFromTheBaseline) {
   EXPECT_THAT(latex(table), HasSubstr("\\textbf{1.500 (-50~\\%)}"));
 }
 
+// A table of so many methods and models; errors differ from cell to cell, the last method of the first model failed.
+Table table_of(int methods, int models) {
+  Overview o = overview();
+  o.methods = o.models = {};
+  std::vector<Record> records;
+  for (int c = 0; c < methods; ++c) o.methods.push_back("method number " + std::to_string(c));
+  o.baseline = o.methods[0];
+  for (int r = 0; r < models; ++r) {
+    o.models.push_back("model" + std::to_string(r));
+    for (int c = 0; c < methods; ++c)
+      records.push_back(record(o.models.back(), o.methods[c], 10 + (7 * r + 5 * c) % 11,
+                               r == 0 && c == methods - 1 ? "crashed: Aborted" : "done"));
+  }
+  return make_table(o, records, o.metrics[0]);
+}
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; at += part.size()) ++found;
+  return found;
+}
+
+std::size_t widest_line(const std::string& markdown) {
+  std::size_t widest = 0;
+  std::istringstream lines(markdown);
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with("| m")) widest = std::max(widest, line.size());
+  return widest;
+}
+
+TEST(Table, ATableTooWideForAPageHasItsMethodsAsRowsInEveryFormat) {
+  const Table narrow = table_of(4, 5), wide = table_of(21, 4);
+  EXPECT_THAT(to_markdown(narrow), HasSubstr("|  | method number 0 | method number 1 |"));
+  const std::string text = to_markdown(wide), page = to_html(wide), paper = to_latex(wide);
+  EXPECT_THAT(text, HasSubstr("|  | model0 | model1 | model2 | model3 | mean of 3 | median of 3 |"));
+  EXPECT_THAT(text, HasSubstr("| method number 20 | – | "));
+  EXPECT_THAT(text, HasSubstr("–: method number 20: crashed: Aborted (model0)"));
+  EXPECT_THAT(text, HasSubstr("method number 1 − method number 0: "));
+  EXPECT_EQ(count(page, "<th>"), 7u);
+  EXPECT_EQ(count(page, "<tr>"), 1u + 21u);
+  EXPECT_EQ(count(paper, "\\\n"), 1u + 21u);
+  EXPECT_THAT(to_csv(wide), testing::StartsWith("row,method number 0,"));  // data: a row a model, as ever
+}
+
+TEST(Table, NoEntryIsLostAndTheSameAreBestHoweverATableIsLaidOut) {
+  for (const auto& [methods, models] : {std::pair(3, 4), std::pair(21, 4), std::pair(21, 60), std::pair(4, 60)}) {
+    const Table table = table_of(methods, models);
+    const std::string text = to_markdown(table), page = to_html(table), paper = to_latex(table);
+    EXPECT_LT(widest_line(text), 160u) << methods << " x " << models;
+    EXPECT_EQ(count(page, "<td class=\"best\">"), count(paper, "\\textbf{"));
+    EXPECT_EQ(count(page, "<td class=\"best\">"), (count(text, "**") - 2) / 2);  // the title is bold too
+    std::size_t best = 0;
+    for (int row = 0; row < models; ++row) {
+      double least = INFINITY;
+      for (const Table::Entry& entry : table.rows[row].entries) least = std::min(least, entry.value.value_or(INFINITY));
+      for (const Table::Entry& entry : table.rows[row].entries) best += entry.value == least;
+      EXPECT_GE(count(page, ">model" + std::to_string(row) + "<"), 1u);
+    }
+    EXPECT_GE(count(page, "<td class=\"best\">"), best + 2);  // and of means and medians
+    EXPECT_EQ(count(page, "<td>–</td>"), 1u);
+  }
+}
+
+TEST(TextTable, WhatAFormatTakesForItsOwnIsWrittenAsText) {
+  const TextTable table{{"a|b", "x^2~{%}"}, {{{"c|d"}, {"1 < 2"}}}};
+  EXPECT_THAT(markdown(table), HasSubstr("| a\\|b | x^2~{%} |"));
+  EXPECT_THAT(latex(table), HasSubstr("x\\^{}2\\~{}\\{\\%\\}"));
+  EXPECT_THAT(latex(table), HasSubstr("1 $<$ 2"));
+}
+
 TEST(Table, AMethodThatNeverWorksLeavesTheOthersTheirMeans) {
   const Table table =
       make_table(overview(), {record("ant", "base", 2), record("ant", "new", 0, "crashed")}, overview().metrics[0]);
@@ -115,12 +198,65 @@ TEST(Results, EveryStageIsThoseThatAnyRunHad) {
                  {kEveryStage, "", "s", Direction::lower}};
   Record run = record("ant", "new", 1);
   run.metrics.insert({{"seconds_known", 1}, {"seconds_new", 2}});
-  std::filesystem::create_directories(folder / "ant");
-  write_file(folder / kOverviewFile, [&](std::ostream& out) { out << to_json(all); });
-  write_file(folder / "ant" / kRecordFile, [&](std::ostream& out) { out << to_json(run); });
   std::vector<std::string> names;
-  for (const RunMetric& metric : load_results(folder / "").overview.metrics) names.push_back(metric.name);
+  for (const RunMetric& metric : stored(folder, all, {run}).overview.metrics) names.push_back(metric.name);
   EXPECT_THAT(names, testing::ElementsAre("error", "seconds_known", "seconds_new"));
+}
+
+TEST(Results, ARunThatStatesASweptFieldStandsInEveryRowOfIt) {
+  const TemporaryFolder folder;
+  Overview swept = overview();
+  swept.sweep = {"grid", "steps"};
+  std::vector<Record> records;
+  for (const char* steps : {"0", "1"}) {
+    records.push_back(record("ant", "base", 5));
+    records.back().swept = {{"steps", steps}};
+    for (const char* grid : {"32", "64", "128"}) {
+      records.push_back(record("ant", "new", 7));
+      records.back().swept = {{"grid", grid}, {"steps", steps}};
+    }
+  }
+  const Results found = stored(folder, swept, records);
+  EXPECT_EQ(found.records.size(), 8u);  // what ran is counted once
+  EXPECT_EQ(found.rows.size(), 12u);
+  const Table table = make_table(found.overview, found.rows, found.overview.metrics[0]);
+  EXPECT_EQ(table.rows.size(), 6u);
+  EXPECT_EQ(table.complete_rows, 6);
+  for (const Table::Row& row : table.rows) EXPECT_EQ(row.entries[0].value, 5) << row.label;
+}
+
+TEST(Results, WhatTheSpecNoLongerHasIsLeftOutAndSaid) {
+  const TemporaryFolder folder;
+  const Results all = stored(folder, overview(), {record("ant", "base", 1), record("ant", "old", 9)});
+  EXPECT_EQ(all.records.size(), 2u);
+  Overview shorter = all.overview;
+  shorter.runs = {all.records[0].folder};
+  write_file(folder / "s" / kOverviewFile, [&](std::ostream& out) { out << to_json(shorter); });
+  const Results some = load_results(folder / "s");
+  ASSERT_EQ(some.records.size(), 1u);
+  EXPECT_EQ(some.records[0].folder, shorter.runs[0]);
+  EXPECT_THAT(some.complaints, testing::ElementsAre(HasSubstr("1 runs left out")));
+}
+
+TEST(Front, RunsAreCountedByHowTheyEndedAndTheThesisIsInItsOrder) {
+  const TemporaryFolder folder;
+  Overview with = overview();
+  with.thesis = {"Fig. 4.10", "Fig. 4.9", "Table 4.3"};
+  Record good = record("ant", "base", 1);
+  good.provenance = {{"commit", "0123456789abcdef"}, {"dirty", "yes"}, {"cpu", "a fast one"}, {"date", "2000-01-01"}};
+  Results found = stored(folder, with,
+                         {good, record("ant", "new", 0, "crashed: Aborted"),
+                          record("zebra", "new", 0, std::string(kNotInstalled) + ": colmap")});
+  found.overview.runs.emplace_back("one more");
+  const Front front = front_of({{"s", found}}, {{"Table 4.3: seconds", {}, {}}});
+  EXPECT_EQ(front.lines[0],
+            "1 experiment, 1 of 4 runs have a result, 1 failed, 1 need what is not installed, 1 are not run yet.");
+  EXPECT_THAT(front.lines[1], HasSubstr("commit 0123456789 and changes not committed"));
+  EXPECT_THAT(front.lines[2], HasSubstr("a fast one"));
+  std::vector<std::string> thesis;
+  for (const Front::Place& place : front.thesis) thesis.push_back(place.what);
+  EXPECT_THAT(thesis, testing::ElementsAre("Table 4.3", "Fig. 4.9", "Fig. 4.10"));
+  EXPECT_THAT(front.thesis[0].anchors, testing::ElementsAre("table-4-3", "s"));
 }
 
 TEST(DisplayMesh, AMeshIsPackedWithinItsTrianglesAndTheSameWayEveryTime) {

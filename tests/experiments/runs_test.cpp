@@ -81,6 +81,11 @@ TEST_F(RunsTest, ACrashAHangAndTooMuchMemoryCostTheirCellsOnly) {
                       "[[method]]\nname = \"good\"\n[[method]]\nname = \"bad\"\narm = \"crash\"\n"
                       "[[method]]\nname = \"slow\"\narm = \"hang\"\n[[method]]\nname = \"large\"\narm = \"hoard\"\n");
   EXPECT_EQ(experiments("run " + path("s.toml") + " -o " + path("r") + " --jobs 4").code, 1);
+  for (const char* method : {"good", "bad", "slow", "large"})  // also of what failed it is known what ran
+    for (const char* key : {"commit", "dirty", "compiler", "flags", "libraries", "cpu", "date"})
+      EXPECT_THAT(read_file(folder_ / "r/s/box" / method / "seed=1/run.json"),
+                  HasSubstr(std::string("\"") + key + "\": \""))
+          << method;
   const std::string text = table("r");
   EXPECT_THAT(text, testing::ContainsRegex("box \\| \\*\\*[0-9.]+\\*\\* \\| – \\| – \\| – \\|"));
   EXPECT_THAT(text, HasSubstr("bad: crashed: "));

@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <map>
 #include <set>
 
 #include "run/models.h"
@@ -60,8 +61,25 @@ TEST_F(SpecTest, APlanIsEveryCombination) {
   EXPECT_EQ(ids.size(), cells.size());
 }
 
-TEST_F(SpecTest, SweptValuesWinOverAMethodsAndTheSpecs) {
+TEST_F(SpecTest, SweptValuesWinOverTheSpecs) {
   for (const Cell& cell : plan(read(kGood))) EXPECT_EQ(cell.settings.at("grid"), cell.swept.at("grid"));
+}
+
+TEST_F(SpecTest, AMethodThatStatesASweptFieldIsRunOnceForIt) {
+  const Spec spec = read(
+      "models = [\"box\", \"sphere\"]\nseeds = [1, 2]\nsweep = { grid = [16, 32, 64], smooth.steps = [0, 1] }\n"
+      "[[method]]\nname = \"follows\"\n[[method]]\nname = \"states\"\noptions = { grid = 24 }\n");
+  std::map<std::string, int> runs;
+  std::set<std::filesystem::path> paths;
+  for (const Cell& cell : plan(spec)) {
+    ++runs[cell.method];
+    paths.insert(cell.path);
+    EXPECT_EQ(cell.swept.contains("grid"), cell.method == "follows");
+    EXPECT_EQ(cell.settings.at("grid"), cell.method == "follows" ? cell.swept.at("grid") : "24");
+    EXPECT_EQ(cell.settings.at("smooth.steps"), cell.swept.at("smooth.steps"));
+  }
+  EXPECT_EQ(runs, (std::map<std::string, int>{{"follows", 2 * 2 * 3 * 2}, {"states", 2 * 2 * 2}}));
+  EXPECT_EQ(paths.size(), plan(spec).size());
 }
 
 TEST_F(SpecTest, SweptNumbersAreWrittenAsInTheSpec) {
@@ -99,6 +117,17 @@ TEST_F(SpecTest, ErrorsNameFileAndLine) {
   EXPECT_THAT(error_of(good + "arm = \"magic\"\n"), testing::HasSubstr("unknown arm magic"));
   EXPECT_THAT(error_of(good + "[[method]]\nname = \"a\"\n"), testing::HasSubstr("x.toml:4: method a is there twice"));
   EXPECT_THAT(error_of("baseline = \"b\"\n" + good), testing::HasSubstr("baseline b"));
+  EXPECT_THAT(error_of("\nmodels = [\n\"box\",\n\"bxo\"]\n"), testing::HasSubstr("x.toml:4: models: there is no bxo"));
+  EXPECT_THAT(error_of("models = [\"bx*\"]\n"), testing::HasSubstr("x.toml:1: models: there is no bx*"));
+  EXPECT_THAT(error_of("renders = [\"bxo\"]\n" + good), testing::HasSubstr("x.toml:1: models: there is no bxo"));
+  EXPECT_THAT(error_of("heat_map = { models = [\"bxo\"] }\n" + good), testing::HasSubstr("x.toml:1: models: there is"));
+  EXPECT_THAT(error_of("sweep = { grid = [] }\n" + good), testing::HasSubstr("x.toml:1: grid needs a value"));
+  for (const char* twice : {"seeds = [1, 1]\n", "sweep = { grid = [16, 16] }\n", "metrics = [\"iou\", \"iou\"]\n"})
+    EXPECT_THAT(error_of(twice + good), testing::HasSubstr("x.toml:1: is there twice"));
+  EXPECT_THAT(error_of("seeds = [-1]\n" + good), testing::HasSubstr("a seed must be in [0, 4294967295]"));
+  EXPECT_THAT(error_of("thesis = [\"Figure 4.2\"]\n" + good), testing::HasSubstr("x.toml:1: thesis must name"));
+  EXPECT_THAT(error_of("\nsweep = { grid = [16, 32] }\n" + good + "options = { grid = 8 }\n"),
+              testing::HasSubstr("x.toml:2: every method states grid itself"));
   EXPECT_THAT(error_of("models = [\"box\"\n"), testing::HasSubstr("x.toml:"));
   EXPECT_THAT(error_of("models = [\"box\"]\n"), testing::HasSubstr("at least one [[method]]"));
 }
