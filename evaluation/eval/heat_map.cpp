@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <stdexcept>
 
@@ -158,6 +159,47 @@ class Figure {
 };
 
 }  // namespace
+
+Mesh with_short_edges(const Mesh& mesh, double longest) {
+  Mesh out = mesh;
+  for (bool any = true; any;) {
+    any = false;
+    std::map<std::pair<int, int>, int> middles;  // of long edges: both of their triangles find the same
+    std::vector<Triangle> finer;
+    const auto is_long = [&](int a, int b) { return (out.positions[a] - out.positions[b]).norm() > longest; };
+    const auto middle = [&](int a, int b) {
+      const auto [entry, is_new] = middles.try_emplace(std::minmax(a, b), static_cast<int>(out.positions.size()));
+      if (is_new) out.positions.push_back((out.positions[a] + out.positions[b]) / 2);
+      return entry->second;
+    };
+    for (Triangle t : out.triangles) {
+      const int count = is_long(t[0], t[1]) + is_long(t[1], t[2]) + is_long(t[2], t[0]);
+      any = any || count > 0;
+      // Turned so that a single long edge is the first, a single short one the last.
+      for (int k = 0; k < 2 && (count == 1 ? !is_long(t[0], t[1]) : count == 2 && is_long(t[2], t[0])); ++k)
+        t = {t[1], t[2], t[0]};
+      if (count == 0) {
+        finer.push_back(t);
+        continue;
+      }
+      const int m = middle(t[0], t[1]);
+      if (count == 1) {
+        finer.insert(finer.end(), {{t[0], m, t[2]}, {m, t[1], t[2]}});
+        continue;
+      }
+      const int n = middle(t[1], t[2]);
+      finer.push_back({m, t[1], n});
+      if (count == 2) {
+        finer.insert(finer.end(), {{t[0], m, n}, {t[0], n, t[2]}});
+        continue;
+      }
+      const int o = middle(t[2], t[0]);
+      finer.insert(finer.end(), {{t[0], m, o}, {o, n, t[2]}, {m, n, o}});
+    }
+    out.triangles = std::move(finer);
+  }
+  return out;
+}
 
 double heat_range(const std::vector<HeatMap>& maps, double diagonal, const HeatMapOptions& options) {
   if (options.range) return *options.range / 100 * diagonal;

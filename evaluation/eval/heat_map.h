@@ -32,6 +32,10 @@ struct HeatMap {
   std::vector<double> distances;
 };
 
+/// The same surface with every edge longer than `longest` halved until none is: distances known at vertices alone say
+/// nothing of what lies inside a large triangle. Triangles stay joined; the first vertices are the mesh's own.
+Mesh with_short_edges(const Mesh& mesh, double longest);
+
 /// The ramp's end in the model's unit: options.range, or the 99th percentile of all |distances|, rounded up to
 /// 1, 1.5, 2, 3, 4, 5, 6 or 8 times a power of ten in % of the diagonal.
 double heat_range(const std::vector<HeatMap>& maps, double diagonal, const HeatMapOptions& options);

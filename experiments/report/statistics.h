@@ -15,8 +15,8 @@ struct PairedDifference {
   double p = 1;              // two-sided exact sign test; ties are left out
   /// Below this not even pairs that all agree are unlikely by chance (sign test, 5 %).
   static constexpr int kLeastPairs = 6;
-  /// The interval does not contain 0.
-  bool beyond_noise() const { return pairs >= kLeastPairs && (low > 0 || high < 0); }
+  /// The interval does not contain 0, and the sign test agrees: of few pairs an interval alone is too narrow.
+  bool beyond_noise() const { return pairs >= kLeastPairs && (low > 0 || high < 0) && p <= 0.05; }
 };
 
 /// Bootstrap of 10,000 resamples with a fixed seed: the same differences give the same interval everywhere.

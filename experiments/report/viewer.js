@@ -41,10 +41,36 @@
       indices[i] = next - back;
       if (back === 0) ++next;
     }
+    return creased(positions, indices);
+  }
+
+  // Smooth within 40 degrees, an edge beyond: every corner has the mean normal of the triangles around its vertex that
+  // face as its own does.
+  function creased(positions, indices) {
+    const first = new Uint32Array(positions.length / 3 + 1), around = new Uint32Array(indices.length);
+    for (const v of indices) ++first[v + 1];
+    for (let v = 0; v + 1 < first.length; ++v) first[v + 1] += first[v];
+    const next = first.slice();
+    indices.forEach((v, i) => { around[next[v]++] = Math.floor(i / 3); });
+
+    const corners = new Float32Array(3 * indices.length), normals = new Float32Array(3 * indices.length);
+    indices.forEach((v, i) => corners.set(positions.subarray(3 * v, 3 * v + 3), 3 * i));
+    const faces = [], a = new THREE.Vector3(), b = new THREE.Vector3(), c = new THREE.Vector3();
+    for (let i = 0; i < indices.length; i += 3) {
+      a.fromArray(corners, 3 * i), b.fromArray(corners, 3 * i + 3).sub(a), c.fromArray(corners, 3 * i + 6).sub(a);
+      const across = new THREE.Vector3().crossVectors(b, c);  // as long as the triangle is large
+      faces.push({across, unit: across.clone().normalize()});
+    }
+    const crease = Math.cos(40 * Math.PI / 180);
+    indices.forEach((v, i) => {
+      const own = faces[Math.floor(i / 3)].unit, sum = new THREE.Vector3();
+      for (let k = first[v]; k < first[v + 1]; ++k)
+        if (faces[around[k]].unit.dot(own) > crease) sum.add(faces[around[k]].across);
+      sum.normalize().toArray(normals, 3 * i);
+    });
     const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
-    geometry.setIndex(new THREE.BufferAttribute(indices, 1));
-    geometry.computeVertexNormals();
+    geometry.setAttribute('position', new THREE.BufferAttribute(corners, 3));
+    geometry.setAttribute('normal', new THREE.BufferAttribute(normals, 3));
     geometry.computeBoundingSphere();
     return geometry;
   }

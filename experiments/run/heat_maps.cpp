@@ -14,13 +14,14 @@ namespace {
 Picture figure(const fs::path& results, const std::vector<const Record*>& runs, double range) {
   const Mesh reference = read_mesh(results / kReferences / (runs.front()->provenance.at(kReferenceKey) + ".ply"));
   const MeshDistance distance(reference);
+  const double diagonal = box_diagonal(reference), longest = diagonal / 100;  // a few pixels
   std::vector<HeatMap> maps;
   for (const Record* run : runs) {
-    HeatMap map{run->method, read_mesh(results / run->folder / "mesh.ply"), {}};
+    HeatMap map{run->method, with_short_edges(read_mesh(results / run->folder / "mesh.ply"), longest), {}};
     map.distances = signed_distances(map.mesh.positions, distance.nearest(map.mesh.positions), reference);
     maps.push_back(std::move(map));
   }
-  return draw_heat_maps(maps, reference, box_diagonal(reference), {.range = range, .show_reference = true});
+  return draw_heat_maps(maps, reference, diagonal, {.range = range, .show_reference = true});
 }
 
 }  // namespace
@@ -28,6 +29,7 @@ Picture figure(const fs::path& results, const std::vector<const Record*>& runs, 
 std::vector<fs::path> draw_heat_maps_of(const fs::path& folder, const Overview& overview,
                                         const std::vector<Record>& records) {
   std::vector<fs::path> written;
+  fs::remove_all(folder / "heat_maps");  // the report shows what is there
   for (const Figure& wanted : figures_of(overview, records, overview.heat_map_models)) {
     if (!wanted.runs.front()->provenance.contains(kReferenceKey)) continue;
     fs::create_directories(folder / "heat_maps");

@@ -102,6 +102,7 @@ Picture figure_of(const fs::path& results, const std::vector<const Record*>& run
 std::vector<fs::path> draw_renders_of(const fs::path& folder, const Overview& overview,
                                       const std::vector<Record>& records) {
   std::vector<fs::path> written;
+  fs::remove_all(folder / "renders");  // the report shows what is there
   for (const Figure& figure : figures_of(overview, records, overview.render_models)) {
     fs::create_directories(folder / "renders");
     written.push_back(folder / "renders" / figure.file);

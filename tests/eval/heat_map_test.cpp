@@ -8,6 +8,7 @@
 #include "carve/core/file.h"
 #include "carve/core/parallel.h"
 #include "carve/mesh/mesh_io.h"
+#include "carve/mesh/topology.h"
 #include "eval/meshes.h"
 #include "eval/text.h"
 #include "temporary_folder.h"
@@ -47,6 +48,21 @@ TEST(Ramp, ScalesWithTheRangeAndEndsThere) {
     EXPECT_EQ(colour(ramp, 7, 2), colour(ramp, 2, 2));
     EXPECT_EQ(colour(ramp, -7, 2), colour(ramp, -2, 2));
   }
+}
+
+TEST(WithShortEdges, KeepsTheSurfaceAndLeavesNoLongEdge) {
+  for (const Mesh& mesh : {cube(), globe(5, 7, [](double p, double a) { return 1 + 0.3 * std::sin(3 * p + a); })})
+    for (const double longest : {10.0, 0.7, 0.31, 0.05}) {
+      const Mesh fine = with_short_edges(mesh, longest);
+      const Topology before = topology(mesh), after = topology(fine);
+      EXPECT_NEAR(after.area, before.area, 1e-9);
+      EXPECT_NEAR(after.volume, before.volume, 1e-9);
+      EXPECT_TRUE(after.solid());
+      for (const Triangle& t : fine.triangles)
+        for (int k = 0; k < 3; ++k) EXPECT_LE((fine.positions[t[k]] - fine.positions[t[(k + 1) % 3]]).norm(), longest);
+      EXPECT_TRUE(std::equal(mesh.positions.begin(), mesh.positions.end(), fine.positions.begin()));
+    }
+  EXPECT_EQ(with_short_edges(cube(), 10), cube());
 }
 
 TEST(Text, LeavesInkWhereItIsDrawnAndNowhereElse) {

@@ -72,6 +72,14 @@ TEST(Statistics, AnIntervalHoldsItsMeanAndNoDifferenceIsNone) {
   }
 }
 
+TEST(Statistics, FewPairsThatDisagreeAreNoiseWhateverTheirInterval) {
+  const std::vector<double> a = {3, 2, 4, 3, 2, -0.1}, agree = {3, 2, 4, 3, 2, 0.1}, zero(6, 0.0);
+  const PairedDifference d = paired_difference(a, zero);
+  EXPECT_GT(d.low, 0);
+  EXPECT_FALSE(d.beyond_noise());
+  EXPECT_TRUE(paired_difference(agree, zero).beyond_noise());
+}
+
 TEST(Table, RowsFollowTheSpecTheBestIsBoldAFailureIsADashWithItsReason) {
   const Table table = make_table(overview(),
                                  {record("ant", "base", 2), record("ant", "new", 1), record("zebra", "base", 3),
