@@ -42,6 +42,7 @@ constexpr Method kMethods[] = {
     {"patches", "multi-view stereo by patches as PMVS does it, Poisson", patches_arm, true},
     {"colmap", "sparse points of COLMAP, if it is installed; Poisson", colmap_arm, true},
     {"pmvs2", "the points of a pmvs2 on the PATH; Poisson", pmvs2_arm, true},
+    {"cmvs", "the points of a pmvs2 on the clusters of a cmvs and genOption; Poisson", cmvs_arm, true},
     {"crash", "dies of a segmentation fault: to see that a sweep survives it", crash},
     {"hang", "never ends: to see the time limit at work", hang},
     {"hoard", "takes memory until there is none: to see the memory limit at work", hoard},

@@ -18,6 +18,7 @@ std::vector<Field> fields(RunOptions& options) {
   add_fields(all, "stereo", options.stereo);
   add_fields(all, "patches", options.patches);
   add_fields(all, "external", options.external);
+  add_fields(all, "pmvs", options.pmvs);
   return all;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 #include "carve/core/options.h"
-#include "carve/photo/patches.h"
+#include "carve/photo/photo_files.h"
 #include "carve/photo/rig.h"
 #include "carve/photo/space_carving.h"
 #include "carve/photo/stereo.h"
@@ -17,12 +17,15 @@ struct ExternalOptions {
   bool masks = true;
   double seconds = 600;
   double angle = 30;  // degrees
+  int max_images = 100;
 };
 template <class Visitor>
 void visit_fields(ExternalOptions& o, Visitor&& field) {
   field("masks", o.masks, "the program gets the masks");
   field("seconds", o.seconds, 0.1, 1e6, "a program that runs longer is stopped");
-  field("angle", o.angle, 0.1, 180.0, "largest angle in degrees between two photos whose features are matched");
+  field("angle", o.angle, 0.1, 180.0,
+        "largest angle in degrees between two photos whose features are matched by colmap");
+  field("max_images", o.max_images, 2, 10000, "photos in a cluster of cmvs, at most");
 }
 
 /// Every option that a spec may set: the pipeline's as in carve build, "synthesize.*", "degrade.*", "evaluate.*" and
@@ -40,6 +43,7 @@ struct RunOptions {
   StereoOptions stereo;
   PatchOptions patches;
   ExternalOptions external;
+  PmvsOptions pmvs;  // of pmvs2, whether cmvs ran before it or not
 };
 
 std::vector<Field> fields(RunOptions& options);

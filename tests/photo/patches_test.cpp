@@ -68,6 +68,18 @@ TEST(Patches, OfABallLieOnItAndFaceOutwards) {
   EXPECT_GT(straight, 0.95 * static_cast<double>(points.positions.size()));
 }
 
+TEST(Patches, MatchedFeaturesAreSeenWhereTheySaySo) {
+  const std::vector<Photo> photos = kBall.photos(kRing);
+  const std::vector<SeenPoint> points = matched_features(photos, kLow, kHigh);
+  ASSERT_GT(points.size(), 100u);
+  for (const SeenPoint& point : points) {
+    EXPECT_LT(error(point.position), 0.03);
+    EXPECT_GE(point.photos.size(), 3u);
+    for (const int i : point.photos)
+      EXPECT_GT((point.position - kBall.centre).dot(photos[i].camera.centre() - point.position), 0);
+  }
+}
+
 TEST(Patches, WithoutTextureThereAreNone) {
   const std::vector<Photo> photos = BallScene{}.photos(kRing);
   const OrientedPoints points = patches(photos, kLow, kHigh);

@@ -66,6 +66,60 @@ TEST_F(PhotoFiles, WithoutMasksNoneAreThere) {
   EXPECT_FALSE(fs::exists(folder_ / "masks"));
 }
 
+// Bundler: P = R X + t, p = -P / P.z, f p from the picture's middle, y up.
+TEST_F(PhotoFiles, BundlersCamerasSeePointsWhereTheFileHasThem) {
+  const std::vector<SeenPoint> points = {{Vec3(0.2, 0.7, 0.3), {0, 2}}, {Vec3(-0.1, 0.3, 0.4), {2, 1, 3}}};
+  write_pmvs(folder_, photos_);
+  write_bundle(folder_ / "bundle.rd.out", photos_, points);
+  std::ifstream in(folder_ / "bundle.rd.out");
+  std::string line;
+  std::getline(in, line);
+  EXPECT_EQ(line, "# Bundle file v0.3");
+  std::size_t cameras = 0, count = 0;
+  in >> cameras >> count;
+  ASSERT_EQ(cameras, 4u);
+  ASSERT_EQ(count, 2u);
+  std::vector<double> focal(4), k1(4), k2(4);
+  std::vector<Eigen::Matrix3d> rotation(4);
+  std::vector<Vec3> translation(4);
+  for (int k = 0; k < 4; ++k) {
+    in >> focal[k] >> k1[k] >> k2[k];
+    for (int i = 0; i < 9; ++i) in >> rotation[k](i / 3, i % 3);
+    in >> translation[k].x() >> translation[k].y() >> translation[k].z();
+    EXPECT_EQ(k1[k], 0);
+    EXPECT_EQ(k2[k], 0);
+    EXPECT_NEAR(rotation[k].determinant(), 1, 1e-9);
+  }
+  for (const SeenPoint& point : points) {
+    Vec3 x, colour;
+    std::size_t views = 0;
+    in >> x.x() >> x.y() >> x.z() >> colour.x() >> colour.y() >> colour.z() >> views;
+    EXPECT_EQ(x, point.position);
+    ASSERT_EQ(views, point.photos.size());
+    for (const int photo : point.photos) {
+      int i = -1, key = -1;
+      Vec2 at;
+      in >> i >> key >> at.x() >> at.y();
+      ASSERT_EQ(i, photo);
+      const Vec3 p = rotation[i] * x + translation[i];
+      EXPECT_LT(p.z(), 0);
+      EXPECT_LT((focal[i] * Vec2(p.x(), p.y()) / -p.z() - at).norm(), 0.01);
+      EXPECT_LT((Vec2(24 + at.x(), 24 - at.y()) - project(photos_[i].camera, x)).norm(), 0.01);
+    }
+  }
+  EXPECT_TRUE(in);
+  const std::vector<SeenPoint> wrong = {{Vec3::Zero(), {4}}};
+  EXPECT_THROW(write_bundle(folder_ / "b", photos_, wrong), std::invalid_argument);
+}
+
+TEST_F(PhotoFiles, PmvsOptionsAreWrittenByTheirNames) {
+  write_pmvs(folder_, photos_, true,
+             {.level = 0, .csize = 3, .threshold = 0.65, .wsize = 9, .min_image_num = 4, .cpu = 2});
+  EXPECT_THAT(read_file(folder_ / "option.txt"),
+              ::testing::StartsWith("level 0\ncsize 3\nthreshold 0.65\nwsize 9\nminImageNum 4\nCPU 2\n"));
+  EXPECT_THROW(write_pmvs(folder_, photos_, true, {.csize = 0}), std::invalid_argument);
+}
+
 TEST_F(PhotoFiles, ColmapPosesProjectToHundredthsOfAPixel) {
   write_colmap(folder_, photos_);
   std::ifstream cameras(folder_ / "sparse" / "cameras.txt"), images(folder_ / "sparse" / "images.txt");

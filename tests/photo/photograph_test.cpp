@@ -61,6 +61,25 @@ TEST(Photograph, MasksAreTheBallsDiscs) {
   }
 }
 
+// Where a ball off the middle is seen, as the mean place of its light, against rays through sixteenths of pixels.
+TEST(Photograph, ShowsABallWhereItsCameraProjectsIt) {
+  const BallScene scene;
+  const Camera camera = look_at({0.7, 1.1, 3}, {0.25, 0.35, 0}, {0, 1, 0}, 256, 256, 30);
+  const Photo photo = photograph(ball(), {&camera, 1}, {.style = PhotoStyle::flat, .samples = 8})[0];
+  Vec2 seen = Vec2::Zero(), expected = Vec2::Zero();
+  double light = 0, hits = 0;
+  for (int j = 0; j < 256; ++j)
+    for (int i = 0; i < 256; ++i) {
+      seen += photo.picture(i, j).g * Vec2(i + 0.5, j + 0.5), light += photo.picture(i, j).g;
+      for (int s = 0; s < 256; ++s) {
+        const Vec2 place(i + (s % 16 + 0.5) / 16, j + (s / 16 + 0.5) / 16);
+        if (scene.hit(camera, place)) expected += place, ++hits;
+      }
+    }
+  ASSERT_GT(hits, 256 * 10000);
+  EXPECT_LT((seen / light - expected / hits).norm(), 0.01);
+}
+
 TEST(Photograph, StylesDifferInWhatTwoPhotosAgreeOn) {
   EXPECT_LT(difference_between_photos(PhotoStyle::flat), 0.01);
   EXPECT_LT(difference_between_photos(PhotoStyle::plain), 4);

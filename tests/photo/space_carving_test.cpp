@@ -80,6 +80,34 @@ TEST(SpaceCarving, ATexturedBallConvergesToItsPhotoHull) {
   EXPECT_LT(before, 0.75);
 }
 
+// The photo hull is the union of all consistent shapes: those found from less of the start lie in it. But for single
+// voxels: colours are ranges, which widen where less is hidden.
+TEST(SpaceCarving, ItsPhotoHullHoldsTheConsistentShapesFoundElsewhere) {
+  const std::vector<Photo> photos = kStriped.photos(kFew);
+  const VoxelGrid start = silhouette_hull(photos, region(kStriped, 48));
+  const VoxelGrid hull = space_carving(photos, start, {.margin = 0}).grid;
+  const auto part = [&](auto&& keeps) {
+    VoxelGrid grid = start;
+    for (int z = 0; z < grid.size().z(); ++z)
+      for (int y = 0; y < grid.size().y(); ++y)
+        for (int x = 0; x < grid.size().x(); ++x)
+          if (!keeps(grid.centre(x, y, z))) grid.set(x, y, z, false);
+    return grid;
+  };
+  const auto off = [](const Vec3& p) { return (p - kStriped.centre).norm() - kStriped.radius; };
+  for (const VoxelGrid& less :
+       {part([](const Vec3& p) { return p.x() > 0; }), part([](const Vec3& p) { return p.y() > 0.3 || p.z() > 0; }),
+        part([&](const Vec3& p) { return off(p) < 0.02; })}) {
+    const VoxelGrid shape = space_carving(photos, less, {.margin = 0}).grid;
+    EXPECT_GT(shape.count(), 10000);
+    EXPECT_LT(shape.count(), less.count());
+    EXPECT_NE(shape, hull);
+    const double iou = intersection_over_union(shape, hull);
+    const double common = iou / (1 + iou) * static_cast<double>(shape.count() + hull.count());
+    EXPECT_GT(common, 0.999 * static_cast<double>(shape.count()));
+  }
+}
+
 TEST(SpaceCarving, CarvingWhatWasCarvedChangesNothing) {
   const std::vector<Photo> photos = kStriped.photos(kFew);
   const SpaceCarving carved = space_carving(photos, silhouette_hull(photos, region(kStriped, 64)));

@@ -211,7 +211,9 @@ class Organisation {
   std::vector<Raster<std::vector<int>>> filled_;
 };
 
-void check_sizes(std::span<const Photo> photos, const PatchOptions& options) {
+void check_input(std::span<const Photo> photos, const PatchOptions& options) {
+  check("patches", options);
+  check_photos(photos);
   if (options.wsize % 2 == 0)
     throw std::invalid_argument("patches.wsize must be odd, got " + std::to_string(options.wsize));
   for (const Photo& photo : photos)
@@ -225,9 +227,7 @@ void check_sizes(std::span<const Photo> photos, const PatchOptions& options) {
 
 OrientedPoints patches(std::span<const Photo> photos, const Vec3& low, const Vec3& high, const PatchOptions& options,
                        const Monitor& monitor) {
-  check("patches", options);
-  check_photos(photos);
-  check_sizes(photos, options);
+  check_input(photos, options);
   monitor.at("patches", 0);
   const Photometry photometry(photos, low, high, options);
   Organisation organisation(photometry);
@@ -238,6 +238,15 @@ OrientedPoints patches(std::span<const Photo> photos, const Vec3& low, const Vec
     points.positions.push_back(patch.centre);
     points.normals.push_back(patch.normal);
   }
+  return points;
+}
+
+std::vector<SeenPoint> matched_features(std::span<const Photo> photos, const Vec3& low, const Vec3& high,
+                                        const PatchOptions& options) {
+  check_input(photos, options);
+  std::vector<SeenPoint> points;
+  for (Patch& seed : match_features(Photometry(photos, low, high, options)))
+    points.push_back({seed.centre, std::move(seed.views)});
   return points;
 }
 

@@ -46,4 +46,15 @@ void visit_fields(PatchOptions& o, Visitor&& field) {
 OrientedPoints patches(std::span<const Photo> photos, const Vec3& low, const Vec3& high,
                        const PatchOptions& options = {}, const Monitor& monitor = {});
 
+/// A point of the surface, and which photos show it.
+struct SeenPoint {
+  Vec3 position = Vec3::Zero();
+  std::vector<int> photos = {};
+};
+
+/// What patches() starts from: features of neighbouring photos on one epipolar line, where min_image_num photos agree.
+/// Such sparse points structure from motion has, and view selection \cite furukawa_2010_cmvs wants. \throws as patches
+std::vector<SeenPoint> matched_features(std::span<const Photo> photos, const Vec3& low, const Vec3& high,
+                                        const PatchOptions& options = {});
+
 }  // namespace carve

@@ -1,13 +1,16 @@
 #include "carve/photo/photo_files.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cstdio>
+#include <iomanip>
 #include <locale>
 #include <ostream>
 #include <stdexcept>
 
 #include "carve/core/error.h"
 #include "carve/core/file.h"
+#include "carve/core/options.h"
 #include "carve/image/read_image.h"
 #include "carve/image/write_jpeg.h"
 
@@ -49,6 +52,21 @@ void write_contour(std::ostream& out, Camera camera) {
     out << matrix(i, 0) << ' ' << matrix(i, 1) << ' ' << matrix(i, 2) << ' ' << matrix(i, 3) << '\n';
 }
 
+void write_bundle_camera(std::ostream& out, const Camera& camera) {
+  out << camera.focal << " 0 0\n";
+  const Vec3 turn(1, -1, -1);
+  const Eigen::Matrix3d rotation = turn.asDiagonal() * camera.rotation;
+  for (int i = 0; i < 3; ++i) out << rotation(i, 0) << ' ' << rotation(i, 1) << ' ' << rotation(i, 2) << '\n';
+  const Vec3 translation = turn.cwiseProduct(camera.translation);
+  out << translation.x() << ' ' << translation.y() << ' ' << translation.z() << '\n';
+}
+
+Rgba colour_at(const Photo& photo, const Vec3& point) {
+  const Vec2 at = project(photo.camera, point);
+  return photo.picture(std::clamp(static_cast<int>(at.x()), 0, photo.picture.width - 1),
+                       std::clamp(static_cast<int>(at.y()), 0, photo.picture.height - 1));
+}
+
 void write_pgm(std::ostream& out, const Mask& mask) {
   out << "P5\n" << mask.width << ' ' << mask.height << "\n255\n";
   for (const std::uint8_t inside : mask.pixels) out.put(static_cast<char>(inside ? 255 : 0));
@@ -63,7 +81,8 @@ Picture picture_of(const Mask& mask) {
 
 }  // namespace
 
-void write_pmvs(const fs::path& folder, std::span<const Photo> photos, bool masks) {
+void write_pmvs(const fs::path& folder, std::span<const Photo> photos, bool masks, const PmvsOptions& options) {
+  check("pmvs", options);
   check_any(photos);
   for (const char* part : {"visualize", "txt", "models"}) make_folder(folder / part);
   if (masks) make_folder(folder / "masks");
@@ -76,8 +95,36 @@ void write_pmvs(const fs::path& folder, std::span<const Photo> photos, bool mask
       write_file(folder / "masks" / numbered(i, ".pgm"), [&](std::ostream& out) { write_pgm(out, photo.mask); });
   }
   write_text(folder / "option.txt", [&](std::ostream& out) {
-    out << "level 1\ncsize 2\nthreshold 0.7\nwsize 7\nminImageNum 3\nCPU 1\nsetEdge 0\nuseBound 0\nuseVisData 0\n"
-        << "sequence -1\ntimages -1 0 " << photos.size() << "\noimages 0\n";
+    out << std::setprecision(6) << "level " << options.level << "\ncsize " << options.csize << "\nthreshold "
+        << options.threshold << "\nwsize " << options.wsize << "\nminImageNum " << options.min_image_num << "\nCPU "
+        << options.cpu << "\nsetEdge 0\nuseBound 0\nuseVisData 0\nsequence -1\ntimages -1 0 " << photos.size()
+        << "\noimages 0\n";
+  });
+}
+
+void write_bundle(const fs::path& path, std::span<const Photo> photos, std::span<const SeenPoint> points) {
+  check_any(photos);
+  for (const SeenPoint& point : points)
+    for (const int i : point.photos)
+      if (i < 0 || i >= static_cast<int>(photos.size()))
+        throw std::invalid_argument("a point is in photo " + std::to_string(i) + " of " +
+                                    std::to_string(photos.size()));
+  write_text(path, [&](std::ostream& out) {
+    out << "# Bundle file v0.3\n" << photos.size() << ' ' << points.size() << '\n';
+    for (const Photo& photo : photos) write_bundle_camera(out, photo.camera);
+    std::vector<int> keys(photos.size());
+    for (const SeenPoint& point : points) {
+      const Vec3& x = point.position;
+      const Rgba colour = point.photos.empty() ? Rgba{} : colour_at(photos[point.photos[0]], x);
+      out << x.x() << ' ' << x.y() << ' ' << x.z() << '\n'
+          << int{colour.r} << ' ' << int{colour.g} << ' ' << int{colour.b} << '\n'
+          << point.photos.size();
+      for (const int i : point.photos) {
+        const Vec2 at = project(photos[i].camera, x) - photos[i].camera.principal;
+        out << ' ' << i << ' ' << keys[i]++ << ' ' << at.x() << ' ' << -at.y();
+      }
+      out << '\n';
+    }
   });
 }
 
