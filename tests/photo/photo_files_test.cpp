@@ -28,20 +28,23 @@ class PhotoFiles : public ::testing::Test {
   std::vector<Photo> photos_;
 };
 
-// Pixel (i, j) of PMVS2 has its centre at (i, j), half a pixel before ours.
+// Pixel (i, j) of PMVS2 has its centre at (i, j), half a pixel before ours; of photos halved `level` times, too.
 TEST_F(PhotoFiles, PmvsMatrixProjectsToHundredthsOfAPixel) {
-  write_pmvs(folder_, photos_);
-  for (int k = 0; k < 4; ++k) {
-    std::ifstream in(folder_ / "txt" / ("0000000" + std::to_string(k) + ".txt"));
-    std::string word;
-    Eigen::Matrix<double, 3, 4> matrix;
-    in >> word;
-    EXPECT_EQ(word, "CONTOUR");
-    for (int i = 0; i < 12; ++i) in >> matrix(i / 4, i % 4);
-    ASSERT_TRUE(in);
-    const Vec3 x(0.2, 0.7, -0.1);
-    const Vec2 there = (matrix * x.homogeneous()).hnormalized();
-    EXPECT_LT((there + Vec2(0.5, 0.5) - project(photos_[k].camera, x)).norm(), 0.01);
+  for (const int level : {0, 1, 2}) {
+    write_pmvs(folder_, photos_, true, {.level = level});
+    for (int k = 0; k < 4; ++k) {
+      std::ifstream in(folder_ / "txt" / ("0000000" + std::to_string(k) + ".txt"));
+      std::string word;
+      Eigen::Matrix<double, 3, 4> matrix;
+      in >> word;
+      EXPECT_EQ(word, "CONTOUR");
+      for (int i = 0; i < 12; ++i) in >> matrix(i / 4, i % 4);
+      ASSERT_TRUE(in);
+      const Vec3 x(0.2, 0.7, -0.1);
+      const Vec2 there = (matrix * x.homogeneous()).hnormalized() / (1 << level);
+      const Vec2 ours = project(photos_[k].camera, x) / (1 << level);
+      EXPECT_LT((there + Vec2(0.5, 0.5) - ours).norm(), 0.01);
+    }
   }
 }
 

@@ -44,8 +44,10 @@ void check_any(std::span<const Photo> photos) {
   check_photos(photos);
 }
 
-void write_contour(std::ostream& out, Camera camera) {
-  camera.principal -= Vec2::Constant(0.5);
+// PMVS2 looks a point of the whole photo up at its place divided by 2^level, counted from the middle of the first pixel
+// of the halved photo.
+void write_contour(std::ostream& out, Camera camera, int level) {
+  camera.principal -= Vec2::Constant(0.5 * (1 << level));
   const Eigen::Matrix<double, 3, 4> matrix = projection(camera);
   out << "CONTOUR\n";
   for (int i = 0; i < 3; ++i)
@@ -90,7 +92,8 @@ void write_pmvs(const fs::path& folder, std::span<const Photo> photos, bool mask
     const Photo& photo = photos[i];
     write_file(folder / "visualize" / numbered(i, ".jpg"),
                [&](std::ostream& out) { out << encode_jpeg(photo.picture, 100); });
-    write_text(folder / "txt" / numbered(i, ".txt"), [&](std::ostream& out) { write_contour(out, photo.camera); });
+    write_text(folder / "txt" / numbered(i, ".txt"),
+               [&](std::ostream& out) { write_contour(out, photo.camera, options.level); });
     if (masks)
       write_file(folder / "masks" / numbered(i, ".pgm"), [&](std::ostream& out) { write_pgm(out, photo.mask); });
   }

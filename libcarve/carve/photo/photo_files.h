@@ -27,9 +27,9 @@ void visit_fields(PmvsOptions& o, Visitor&& field) {
 }
 
 /// PMVS2's folder \cite furukawa_2010: visualize/%08d.jpg (quality 100), txt/%08d.txt (CONTOUR and P, for pixel centres
-/// at whole numbers as PMVS2 has them), masks/%08d.pgm (white = object) if `masks`, and option.txt. Run as
-/// `pmvs2 FOLDER/ option.txt`.
-/// \throws IoError; std::invalid_argument if there are no photos or an option is out of range
+/// of the halved photos at whole numbers as PMVS2 has them: 2^level / 2 pixels before ours), masks/%08d.pgm (white =
+/// object) if `masks`, and option.txt. Run as `pmvs2 FOLDER/ option.txt`. \throws IoError; std::invalid_argument if
+/// there are no photos or an option is out of range
 void write_pmvs(const std::filesystem::path& folder, std::span<const Photo> photos, bool masks = true,
                 const PmvsOptions& options = {});
 
