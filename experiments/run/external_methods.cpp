@@ -117,14 +117,14 @@ MethodOutput pmvs2_arm(const MethodInput& input) {
 
 MethodOutput cmvs_arm(const MethodInput& input) {
   const fs::path cmvs = find_program("cmvs"), gen_option = find_program("genOption"), pmvs2 = find_program("pmvs2");
-  const auto& [photos, low, high] = input.photos;
+  const std::vector<Photo>& photos = input.photos.photos;
   const ExternalOptions& external = input.options.external;
   MethodOutput output{
       .provenance = {{"external", version_of(cmvs) + "; " + version_of(gen_option) + "; " + version_of(pmvs2)}}};
   PatchOptions matching = input.options.patches;
   matching.masks = external.masks;
-  const std::vector<SeenPoint> seen =
-      timed(output, "features", [&] { return matched_features(photos, low, high, matching); });
+  const std::vector<SeenPoint> seen = timed(
+      output, "features", [&] { return matched_features(photos, input.photos.low, input.photos.high, matching); });
   if (seen.empty()) throw NoResult("no feature that photos agree on, which cmvs could group them by");
   const WorkFolder folder;
   write_pmvs(folder.path(), photos, external.masks, input.options.pmvs);

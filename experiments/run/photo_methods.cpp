@@ -85,18 +85,19 @@ MethodOutput open_cells_arm(const MethodInput& input) {
 
 MethodOutput stereo_arm(const MethodInput& input) {
   MethodOutput output;
-  const auto& [photos, low, high] = input.photos;
+  const PhotoInput& in = input.photos;
   const StereoOptions& options = input.options.stereo;
-  const std::vector<DepthMap> maps = timed(output, "stereo", [&] { return depth_maps(photos, low, high, options); });
-  const OrientedPoints points = timed(output, "fusion", [&] { return fuse(maps, low, high, options); });
+  const std::vector<DepthMap> maps =
+      timed(output, "stereo", [&] { return depth_maps(in.photos, in.low, in.high, options); });
+  const OrientedPoints points = timed(output, "fusion", [&] { return fuse(maps, in.low, in.high, options); });
   return surface_through(std::move(output), points, input);
 }
 
 MethodOutput patches_arm(const MethodInput& input) {
   MethodOutput output;
-  const auto& [photos, low, high] = input.photos;
+  const PhotoInput& in = input.photos;
   const OrientedPoints points =
-      timed(output, "patches", [&] { return patches(photos, low, high, input.options.patches); });
+      timed(output, "patches", [&] { return patches(in.photos, in.low, in.high, input.options.patches); });
   return surface_through(std::move(output), points, input);
 }
 
