@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "carve/carving/carve_silhouettes.h"
@@ -246,6 +247,29 @@ TEST(Convex, AStraightTaperStaysAsItIs) {
   const ViewSet views = aligned(pyramid, kThreeViews, {.pixels = 512});
   const VoxelGrid solid = hull(views, 128);
   EXPECT_EQ(refined(solid, views), solid);
+}
+
+/// A cylinder of height 1 - tip below a cone: front and side show straight lines only, the top a circle.
+Shape turned(double tip) {
+  Shape shape;
+  shape.name = "cylinder and cone";
+  shape.size = Vec3(0.6, 1, 0.6);
+  shape.volume = std::numbers::pi * 0.09 * (1 - tip + tip / 3);
+  shape.spans = [=](View view, double b) {
+    const double half = view == View::top ? std::sqrt(std::max(0.0, 0.09 - b * b)) : 0.3 * std::min(1.0, (1 - b) / tip);
+    return half > 0 ? Spans{{-half, half}} : Spans{};
+  };
+  return shape;
+}
+
+TEST(Convex, ATaperFromACircleIsACone) {
+  for (const double tip : {0.35, 0.5, 0.6, 0.8})
+    for (const int grid : {64, 128}) {
+      const ViewSet views = aligned(turned(tip), kThreeViews, {.pixels = 512});
+      const VoxelGrid solid = hull(views, grid);
+      const double before = solid.volume() / turned(tip).volume - 1;
+      EXPECT_LT(std::abs(refined(solid, views).volume() / turned(tip).volume - 1), 0.25 * before) << tip << " " << grid;
+    }
 }
 
 TEST(Convex, RefusesOptionsOutOfRange) {

@@ -8,25 +8,12 @@
 namespace carve {
 namespace {
 
-constexpr std::uint8_t kAllCorners = 15;
 constexpr double kFilled = 0.95;         // share of its contour that a section fills, if its box is what bounds it
 constexpr double kFilledGrown = 0.7;     // the same in a solid that looks grown
 constexpr std::size_t kFewestGrown = 3;  // slices of a part whose outlines have a direction
 constexpr double kBlend = 0.12;          // of the longest side: how far apart sections that look grown are alike
 constexpr double kSoften = 0.04;         // of the longest side: how far apart the ends of what is kept are alike
 constexpr int kFarthest = 16;            // voxels, of both: work stays in bounds
-
-float power(float base, int exponent) {
-  float result = 1;
-  for (; exponent; exponent >>= 1, base *= base)
-    if (exponent & 1) result *= base;
-  return result;
-}
-
-/// |distance from the middle / half the way to the ends| ^ exponent, of a voxel's centre.
-float way_out(int index, float low, float high, int exponent) {
-  return power(std::abs((2 * index + 1 - low - high) / (high - low)), exponent);
-}
 
 /// A bit for each corner that lies between two ends which drift.
 std::uint8_t drifting_corners(const Drift& drift) {
@@ -49,13 +36,14 @@ ContourField::ContourField(const VoxelGrid& solid, const ViewSet& views, const C
   const bool all = grown(cuts_, ways) >= options.grown;
   soften_ = all ? voxels(kSoften) : 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const std::vector<int> exponents = part_exponents(cuts_[axis], size_.maxCoeff(), options);
+    const std::vector<PartContour> contours = part_contours(cuts_[axis], size_.maxCoeff(), options, !all);
     std::vector<std::uint8_t> corners;  // of each section, a bit for each corner that is rounded
     for (std::size_t s = 0; s < ways[axis].size(); ++s) {
-      const int part = cuts_[axis].sections[s].part, exponent = exponents[part];
-      const bool by_corners = all && exponent == kRectangle && cuts_[axis].parts[part].size() >= kFewestGrown;
-      exponents_[axis].push_back(by_corners ? kEllipse : exponent);
-      corners.push_back(by_corners ? drifting_corners(ways[axis][s]) : kAllCorners);
+      const int part = cuts_[axis].sections[s].part;
+      const bool by_corners =
+          all && contours[part].exponent == kRectangle && cuts_[axis].parts[part].size() >= kFewestGrown;
+      exponents_[axis].push_back(by_corners ? kEllipse : contours[part].exponent);
+      corners.push_back(by_corners ? drifting_corners(ways[axis][s]) : contours[part].corners);
     }
     keep_unfilled(axis, all ? kFilledGrown : kFilled, all ? 0 : kConvex);
     weigh_corners(axis, corners, all ? voxels(kBlend) : 0);

@@ -45,9 +45,10 @@ struct Refinement {
 /// object to its parts (carving/sections.h): a section's box, which two drawings give, is filled by a scaled contour
 /// instead of a rectangle, so that three circles make a sphere and not three crossed cylinders.
 ///
-/// A part is rounded where both drawings show it curved: boxes, prisms, stairs and straight tapers stay as they are.
-/// The contour is the superellipse \cite barr_1981 whose fill (area over its box's) is that of the part's own outlines;
-/// sections of `solid` that are not convex stay. Slices across all three axes are intersected.
+/// A part is rounded where both drawings show it curved, or where it tapers from a section that the third shows as an
+/// ellipse, as a cone does: boxes, prisms, stairs and other straight tapers stay as they are. The contour is the
+/// superellipse \cite barr_1981 whose fill (area over its box's) is that of the part's own outlines, or of that
+/// section; sections of `solid` that are not convex stay. Slices across all three axes are intersected.
 ///
 /// A solid whose outlines hardly ever stand upright, like an animal's, looks grown: there every section is filled by an
 /// ellipse, in the corners between two outlines that drift, as far as the sections around it are.

@@ -62,6 +62,7 @@ ConsistencyResult two_level(const Input& in) {
   return by_cells(in, [](CellProblem& problem, const Cells&, ConsistencyResult& out) {
     out.ran = Consistency::two_level;
     out.nodes = drop_in_one_pass(problem);
+    restore_unexplained(problem);
   });
 }
 

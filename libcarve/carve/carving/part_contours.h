@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
@@ -11,6 +12,11 @@ namespace carve {
 
 inline constexpr int kRectangle = 0;  // instead of an exponent
 inline constexpr int kEllipse = 2;
+inline constexpr std::uint8_t kAllCorners = 15;
+
+/// |distance of a voxel's centre from the middle / half the way to the ends| ^ exponent; the sum of both axes' is below
+/// 1 inside the superellipse.
+float way_out(int index, float low, float high, int exponent);
 
 /// The share of its box that the superellipse |u|^exponent + |v|^exponent = 1 fills.
 double superellipse_fill(double exponent);
@@ -30,7 +36,14 @@ inline std::pair<float, float> at_corner(const Drift& drift, int corner) {
 /// which both drift, less the share between two that both stand. \param cuts, ways  across the three axes
 double grown(std::span<const Sections> cuts, std::span<const std::vector<Drift>> ways);
 
-/// The exponent of each part's contour, at least 2; kRectangle where the drawings do not show that it is round.
-std::vector<int> part_exponents(const Sections& all, int longest, const ConvexOptions& options);
+/// What rounds a part's sections: an exponent of at least 2, or kRectangle where the drawings do not show that it is
+/// round; and a bit for each corner that it rounds.
+struct PartContour {
+  int exponent = kRectangle;
+  std::uint8_t corners = kAllCorners;
+};
+/// \param built  does not look grown: corners beside straight outlines stay, and straight tapers from an ellipse are
+/// round
+std::vector<PartContour> part_contours(const Sections& all, int longest, const ConvexOptions& options, bool built);
 
 }  // namespace carve
