@@ -93,6 +93,21 @@ std::string anchor_of(const PublishedTable& table) {
   return anchor;
 }
 
+NamedResults load_all(const std::filesystem::path& results) {
+  NamedResults all;
+  for (const std::string& name : specs_in(results)) all.emplace_back(name, load_results(results / name));
+  const auto place = [](const std::vector<std::string>& thesis) {
+    auto first = place_of("");
+    for (const std::string& what : thesis)
+      first = what == thesis.front() ? place_of(what) : std::min(first, place_of(what));
+    return std::pair(thesis.empty(), first);
+  };
+  std::stable_sort(all.begin(), all.end(), [&](const auto& a, const auto& b) {
+    return place(a.second.overview.thesis) < place(b.second.overview.thesis);
+  });
+  return all;
+}
+
 Front front_of(const NamedResults& specs, const std::vector<PublishedTable>& published) {
   Front front{
       lines_of(specs), {{"experiment", "of the thesis", "runs", "done", "failed", "not installed", "not run"}, {}}, {}};

@@ -9,7 +9,10 @@
 
 namespace carve::experiments {
 
-using NamedResults = std::vector<std::pair<std::string, Results>>;  // by the spec's name
+using NamedResults = std::vector<std::pair<std::string, Results>>;  // with the spec's name
+
+/// All results of a folder: first what makes tables and figures of the thesis again, in its order.
+NamedResults load_all(const std::filesystem::path& results);
 
 /// What a report says first: what ran, how it ended, of which program and where, and where each table and figure of the
 /// thesis is.

@@ -137,8 +137,7 @@ void html_provenance(std::ostream& out, const NamedResults& specs) {
 std::string html_report(const fs::path& results, const ReportOptions& options) {
   std::ostringstream out;
   out.imbue(std::locale::classic());
-  NamedResults specs;
-  for (const std::string& name : specs_in(results)) specs.emplace_back(name, load_results(results / name));
+  const NamedResults specs = load_all(results);
   const std::vector<PublishedTable> published = published_tables(options.published, results);
   out << "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
          "content=\"width=device-width, initial-scale=1\"><title>Carve: results</title><link rel=\"icon\" "
@@ -164,8 +163,7 @@ std::string markdown_report(const fs::path& results, const ReportOptions& option
   std::ostringstream out;
   out.imbue(std::locale::classic());
   out << "# Results\n\n";
-  NamedResults specs;
-  for (const std::string& name : specs_in(results)) specs.emplace_back(name, load_results(results / name));
+  const NamedResults specs = load_all(results);
   const std::vector<PublishedTable> published = published_tables(options.published, results);
   const Front front = front_of(specs, published);
   for (const std::string& line : front.lines) out << line << "\n\n";

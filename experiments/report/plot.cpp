@@ -33,12 +33,13 @@ bool is_number(const std::string& text) {
 
 // Wider tables than this are drawn as dots, a line a row: bars would be too thin to tell apart.
 constexpr std::size_t kMostBars = 36;
+constexpr std::size_t kMostRows = 30;  // more are no page any more: only how they spread is drawn
 
 struct Data {
   std::vector<std::string> x;          // swept values or models
   std::vector<std::vector<double>> y;  // [x][method], NaN where there is none
   std::string x_name;
-  bool lines = false, dots = false, log_x = false;
+  bool lines = false, dots = false, spread = false, log_x = false;
 };
 
 // Per value of the first swept field, the mean over the rows that every method has.
@@ -74,7 +75,8 @@ Data model_data(const Overview& overview, const std::vector<Record>& records, co
     data.y.emplace_back();
     for (const Table::Entry& entry : row.entries) data.y.back().push_back(entry.value.value_or(std::nan("")));
   }
-  data.dots = data.x.size() * overview.methods.size() > kMostBars;
+  data.spread = data.x.size() > kMostRows && overview.methods.size() > 1 && !overview.baseline.empty();
+  data.dots = !data.spread && data.x.size() * overview.methods.size() > kMostBars;
   return data;
 }
 
@@ -101,6 +103,7 @@ Layout layout_of(const Data& data, const Overview& overview) {
   for (const std::string& method : overview.methods) longest = std::max(longest, method.size());
   const std::size_t count = overview.methods.size();
   layout.key_columns = std::clamp<std::size_t>((layout.width - 140) / (9 * longest + 70), 1, count);
+  if (data.spread) return {.height = 480, .key_height = 14};
   layout.key_height = 10 + 19 * ((count + layout.key_columns - 1) / layout.key_columns);
   if (data.dots) layout.height = 70 + data.x.size() * std::max<std::size_t>(15, 4 * count);
   layout.height += layout.key_height;
@@ -117,6 +120,35 @@ double largest_over_smallest(const Data& data) {
     for (const double y : row)
       if (y > 0) low = std::min(low, y), high = std::max(high, y);
   return high / low;
+}
+
+// A box a method but the baseline.
+std::string spread_axes(const Overview& overview, const RunMetric& metric) {
+  std::ostringstream out;
+  out << "set ylabel " << quoted(axis_of(metric) + " - " + overview.baseline)
+      << "\nset grid ytics lt 1 lw 0.5 lc rgb '#c8c8c8'\nset xzeroaxis lt 1 lw 1 lc rgb '#8c8c8c'\n"
+      << "set style data boxplot\nset style boxplot outliers pointtype 6\nset style fill solid 0.4 border -1\n"
+      << "set boxwidth 0.5\nunset key\nset rmargin 8\nset xtics rotate by -35 font ',10' (";
+  const char* comma = "";
+  for (std::size_t m = 0; m < overview.methods.size(); ++m) {
+    if (overview.methods[m] == overview.baseline) continue;
+    out << comma << quoted(overview.methods[m]) << " " << m;
+    comma = ", ";
+  }
+  out << ")\n";
+  return out.str();
+}
+
+std::string spread_curves(const Overview& overview, const std::string& name) {
+  const auto column = [](std::size_t m) { return "column(" + std::to_string(m + 2) + ")"; };
+  const auto base = std::find(overview.methods.begin(), overview.methods.end(), overview.baseline);
+  std::string curves;
+  for (std::size_t m = 0; m < overview.methods.size(); ++m)
+    if (overview.methods[m] != overview.baseline)
+      curves += (curves.empty() ? "'" + name + ".csv'" : ", \\\n    ''") + " skip 1 using (" + std::to_string(m) +
+                "):(" + column(m) + " - " + column(base - overview.methods.begin()) + ") lc rgb colour[" +
+                std::to_string(m % 7 + 1) + "]";
+  return curves;
 }
 
 // Axes of lines over a swept field, of bars, or of dots.
@@ -181,7 +213,7 @@ std::string script_of(const Data& data, const Overview& overview, const RunMetri
       // Okabe and Ito's colours: told apart by colour-blind readers, and by shape and dash on grey paper. The baseline
       // is grey.
       << "array colour[7] = ['#0072B2', '#D55E00', '#009E73', '#CC79A7', '#E69F00', '#56B4E9', '#000000']\n"
-      << axes_of(data, metric) << "do for [k = 1:3] {\n";
+      << (data.spread ? spread_axes(overview, metric) : axes_of(data, metric)) << "do for [k = 1:3] {\n";
   const auto terminal = [&](int k, const char* kind, const std::string& dimensions, const char* ending) {
     out << "  if (k == " << k << ") { set terminal " << kind << " noenhanced size " << dimensions
         << " font 'sans,12'; set output '" << name << ending << "' }\n";
@@ -190,7 +222,8 @@ std::string script_of(const Data& data, const Overview& overview, const RunMetri
   terminal(1, "svg", pixels, ".svg");
   terminal(2, "pdfcairo", exact_text(size.width / 100.0) + "," + exact_text(size.height / 100.0), ".pdf");
   terminal(3, "pngcairo", pixels, ".png");
-  out << "  plot " << curves_of(data, overview, name) << "\n}\nset output\n";
+  out << "  plot " << (data.spread ? spread_curves(overview, name) : curves_of(data, overview, name))
+      << "\n}\nset output\n";
   return out.str();
 }
 

@@ -123,7 +123,7 @@ std::vector<Record> load_records(const fs::path& folder, std::vector<std::string
   for (const fs::path& file : files) {
     try {
       records.push_back(record_from_json(read_file(file), file.string()));
-      records.back().folder = fs::relative(file.parent_path(), folder.parent_path()).string();
+      records.back().folder = file.parent_path().lexically_relative(folder.parent_path()).string();
     } catch (const IoError& error) {
       complaints.push_back(error.what());
     }

@@ -8,6 +8,7 @@
 #include "report/compare.h"
 #include "report/display_mesh.h"
 #include "report/front.h"
+#include "report/plot.h"
 #include "report/table.h"
 #include "shapes.h"
 #include "store/record.h"
@@ -244,6 +245,46 @@ TEST(Results, WhatTheSpecNoLongerHasIsLeftOutAndSaid) {
   ASSERT_EQ(some.records.size(), 1u);
   EXPECT_EQ(some.records[0].folder, shorter.runs[0]);
   EXPECT_THAT(some.complaints, testing::ElementsAre(HasSubstr("1 runs left out")));
+}
+
+TEST(Results, ThroughALinkAreTheSame) {
+  const TemporaryFolder folder;
+  stored(folder, overview(), {record("ant", "base", 1), record("ant", "new", 2)});
+  std::filesystem::create_directories(folder / "elsewhere");
+  std::filesystem::create_directory_symlink(folder / "s", folder / "elsewhere/s");
+  EXPECT_EQ(load_results(folder / "elsewhere/s").records.size(), 2u);
+}
+
+TEST(Front, WhatMakesTheThesisAgainComesFirstInItsOrder) {
+  const TemporaryFolder folder;
+  for (const auto& [name, thesis] : {std::pair<std::string, std::vector<std::string>>{"a_more", {}},
+                                     {"b_late", {"Fig. 4.10", "Fig. 4.9"}},
+                                     {"c_early", {"Fig. 4.2"}},
+                                     {"d_table", {"Table 4.3"}}}) {
+    Overview o = overview();
+    o.thesis = thesis;
+    std::filesystem::create_directories(folder / name);
+    write_file(folder / name / kOverviewFile, [&](std::ostream& out) { out << to_json(o); });
+  }
+  std::vector<std::string> names;
+  for (const auto& [name, found] : load_all(folder / "")) names.push_back(name);
+  EXPECT_THAT(names, testing::ElementsAre("d_table", "c_early", "b_late", "a_more"));
+}
+
+TEST(Plot, OfVeryManyModelsDrawsHowDifferencesSpread) {
+  const TemporaryFolder folder;
+  Overview o = overview();
+  o.models.clear();
+  std::vector<Record> records;
+  for (int i = 0; i < 40; ++i) {
+    o.models.push_back("model" + std::to_string(i));
+    records.push_back(record(o.models.back(), "base", i));
+    records.push_back(record(o.models.back(), "new", i + i % 7));
+  }
+  plot(folder / "plots", "error", o, records, o.metrics[0]);
+  EXPECT_THAT(read_file(folder / "plots/error.gnuplot"), HasSubstr("(column(3) - column(2))"));
+  EXPECT_GT(std::filesystem::file_size(folder / "plots/error.svg"), 1000u);
+  EXPECT_THAT(read_file(folder / "plots/error.csv"), HasSubstr("model39,39,43"));  // every value is there
 }
 
 TEST(Front, RunsAreCountedByHowTheyEndedAndTheThesisIsInItsOrder) {
