@@ -4,6 +4,7 @@
 #include <cctype>
 #include <charconv>
 #include <map>
+#include <set>
 #include <tuple>
 
 namespace carve::experiments {
@@ -96,11 +97,10 @@ std::string anchor_of(const PublishedTable& table) {
 NamedResults load_all(const std::filesystem::path& results) {
   NamedResults all;
   for (const std::string& name : specs_in(results)) all.emplace_back(name, load_results(results / name));
-  const auto place = [](const std::vector<std::string>& thesis) {
-    auto first = place_of("");
-    for (const std::string& what : thesis)
-      first = what == thesis.front() ? place_of(what) : std::min(first, place_of(what));
-    return std::pair(thesis.empty(), first);
+  const auto place = [](const std::vector<std::string>& thesis) {  // of its first table or figure; none: last
+    std::set<decltype(place_of(""))> places;
+    for (const std::string& what : thesis) places.insert(place_of(what));
+    return std::pair(places.empty(), places);
   };
   std::stable_sort(all.begin(), all.end(), [&](const auto& a, const auto& b) {
     return place(a.second.overview.thesis) < place(b.second.overview.thesis);

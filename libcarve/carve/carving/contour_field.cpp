@@ -136,9 +136,7 @@ void ContourField::weigh_corners(int axis, const std::vector<std::uint8_t>& corn
 /// Row v of a slice; voxel u's value is field[u * step].
 void ContourField::row(int axis, int slice, int v, float* field, int step) const {
   each_value(axis, slice, v, [&](int section, int u, float value) {
-    const std::array<float, 4>& ends = cuts_[axis].sections[section].ends;
-    const int corner = (2 * u + 1 > ends[0] + ends[1]) + 2 * (2 * v + 1 > ends[2] + ends[3]);
-    const float weight = weights_[axis][section][corner];
+    const float weight = weights_[axis][section][corner_of(cuts_[axis].sections[section], u, v)];
     if (weight == 0) return;
     float& largest = field[static_cast<std::size_t>(u) * step];
     largest = std::max(largest, value * (1 + weight) / 2);  // half of it is a box's

@@ -96,8 +96,7 @@ int exponent_of(const Sections& all, int number) {
     const float across = way_out(v, section.ends[2], section.ends[3], exponent);
     for (int r = all.first_run[at]; r < all.first_run[at + 1]; ++r)
       for (int u = all.runs[r].u0; all.runs[r].section == number && u < all.runs[r].u1; ++u) {
-        const int corner =
-            (2 * u + 1 > section.ends[0] + section.ends[1]) + 2 * (2 * v + 1 > section.ends[2] + section.ends[3]);
+        const int corner = corner_of(section, u, v);
         ++area[corner];
         both[corner] += across + way_out(u, section.ends[0], section.ends[1], exponent) <= 1;
       }

@@ -21,13 +21,19 @@ float way_out(int index, float low, float high, int exponent);
 /// The share of its box that the superellipse |u|^exponent + |v|^exponent = 1 fills.
 double superellipse_fill(double exponent);
 
+/// The corner of its section that voxel (u, v) lies nearest: bit 0 is the upper end of u, bit 1 that of v.
+inline int corner_of(const Section& section, int u, int v) {
+  const std::array<float, 4>& ends = section.ends;
+  return (2 * u + 1 > ends[0] + ends[1]) + 2 * (2 * v + 1 > ends[2] + ends[3]);
+}
+
 /// How fast each of a section's ends moves over the slices around it, in voxels a slice: the slope of the line through
 /// them, as far as they hang together.
 using Drift = std::array<float, 4>;
 /// \param longest  voxels along the solid's longest side
 std::vector<Drift> drifts(const Sections& all, int longest);
 
-/// Of the two ends that meet in corner 0 .. 3: bit 0 is the upper end of u, bit 1 that of v.
+/// Of the two ends that meet in corner 0 .. 3.
 inline std::pair<float, float> at_corner(const Drift& drift, int corner) {
   return {drift[corner & 1], drift[2 + (corner >> 1)]};
 }
