@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <numeric>
 #include <random>
 #include <set>
 
@@ -174,7 +175,7 @@ TEST_P(ConsistencyTest, WhatAddsJumpsAndExplainsTooFewStrokesIsRestored) {
   std::vector<RegionMap> regions;
   for (const AlignedView& view : views.views) regions.push_back(find_regions(view, hull.grid));
   const Cells cells = partition(hull.grid, regions);
-  CellProblem problem(cells, hull.grid.size(), regions, {});
+  CellProblem problem(cells, regions, {});
   for (int c = 0; c < cells.count; ++c) {
     const std::int64_t strokes = problem.strokes(), jumps = problem.jumps();
     problem.flip(std::span(&c, 1));
@@ -192,10 +193,42 @@ TEST_P(ConsistencyTest, EnergyDoesNotDependOnTheGrid) {
     const Carving hull = carve_silhouettes(views, {.grid = grid});
     std::vector<RegionMap> regions;
     for (const AlignedView& view : views.views) regions.push_back(find_regions(view, hull.grid));
-    return static_cast<double>(CellProblem(partition(hull.grid, regions), hull.grid.size(), regions, {}).energy());
+    return static_cast<double>(CellProblem(partition(hull.grid, regions), regions, {}).energy());
   };
   const double coarse = energy(36), fine = energy(72);
   EXPECT_NEAR(coarse / fine, 1, 0.1);
+}
+
+TEST_P(ConsistencyTest, WhatIsDroppedDoesNotDependOnTheGrid) {
+  const ViewSet views = views_of(random_pockets(GetParam()), kThreeViews);
+  const auto dropped = [&](int grid) {
+    const Carving hull = carve_silhouettes(views, {.grid = grid});
+    return 1 - apply_consistency(hull, views, {.grid = 48}).grid.volume() / hull.grid.volume();
+  };
+  const double decided = dropped(48);
+  EXPECT_NEAR(dropped(36), decided, 0.03);
+  EXPECT_NEAR(dropped(96), decided, 0.03);
+}
+
+TEST_P(ConsistencyTest, ACellOfTheDecisionIsDroppedWholeOnOtherGrids) {
+  const ViewSet views = views_of(random_pockets(GetParam()), kThreeViews);
+  const auto cut = [&](const VoxelGrid& hull, std::vector<RegionMap>& regions) {
+    for (const AlignedView& view : views.views) regions.push_back(find_regions(view, hull));
+    return partition(hull, regions);
+  };
+  const VoxelGrid coarse = carve_silhouettes(views, {.grid = 30}).grid,
+                  fine = carve_silhouettes(views, {.grid = 75}).grid;
+  std::vector<RegionMap> coarse_regions, fine_regions;
+  const Cells from = cut(coarse, coarse_regions), own = cut(fine, fine_regions);
+  const Cells moved = transfer(from, coarse, fine, fine_regions);
+  std::vector<int> name(own.count, -1);
+  ASSERT_EQ(moved.runs.size(), own.runs.size());
+  for (std::size_t k = 0; k < own.runs.size(); ++k) {
+    int& cell = name[own.runs[k].cell];
+    if (cell < 0) cell = moved.runs[k].cell;
+    EXPECT_EQ(moved.runs[k].cell, cell);
+  }
+  EXPECT_EQ(std::accumulate(moved.volume.begin(), moved.volume.end(), std::int64_t{0}), fine.count());
 }
 
 TEST_P(ConsistencyTest, SolidsThatExplainAsMuchAreCounted) {
@@ -205,8 +238,8 @@ TEST_P(ConsistencyTest, SolidsThatExplainAsMuchAreCounted) {
   for (const AlignedView& view : views.views) regions.push_back(find_regions(view, hull.grid));
   const Cells cells = partition(hull.grid, regions);
   if (cells.count > 12) GTEST_SKIP() << "too many to try all";
-  CellProblem problem(cells, hull.grid.size(), regions, {});
-  search_cells(problem, cells, hull.grid.size(), regions, {.nodes = 20000});
+  CellProblem problem(cells, regions, {});
+  search_cells(problem, cells, {.nodes = 20000});
 
   // All choices by their numbers; those that cost no more, as far as single cells lead to them.
   const std::vector<std::uint8_t> chosen(problem.keep().begin(), problem.keep().end());

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "carve/carving/stroke_score.h"
+
 namespace carve {
 namespace {
 
@@ -18,26 +20,6 @@ struct SequenceHash {
 };
 
 double ramp(double x, double low, double high) { return std::clamp((x - low) / (high - low), 0.0, 1.0); }
-
-/// What a pair of neighbouring pixels pays for a depth jump of so many voxels, or none.
-class JumpCost {
- public:
-  JumpCost(int resolution, const CellWeights& weights) : n_(resolution), weights_(weights) {}
-  double stroke(Border border, int jump) const {
-    const double weight = border == Border::stroke ? 1 : border == Border::open ? weights_.open : 0;
-    return weight * (1 - ramp(jump / n_, 0.008, 0.02));
-  }
-  double elsewhere(Border border, int jump) const {
-    const double weight = border == Border::none     ? weights_.unexplained
-                          : border == Border::colour ? weights_.colour
-                                                     : 0;
-    return weight * ramp(jump / n_, 0.02, 0.06);
-  }
-
- private:
-  double n_;
-  CellWeights weights_;
-};
 
 /// What a pixel costs in which two views show a cell in colours that differ for certain.
 std::vector<std::array<std::int64_t, 15>> clashes(const Cells& cells, std::span<const RegionMap> views, double weight) {
@@ -56,7 +38,8 @@ std::vector<std::array<std::int64_t, 15>> clashes(const Cells& cells, std::span<
 
 /// Per cell, the one that takes its place when the solid is mirrored left-right: they cover each other all but for a
 /// voxel at their borders. -1: none, or itself. A drawing that is not symmetric cuts cells that have none.
-std::vector<int> mirror_images(const Cells& cells, const Vec3i& size) {
+std::vector<int> mirror_images(const Cells& cells) {
+  const Vec3i& size = cells.size;
   std::vector<std::size_t> begin(static_cast<std::size_t>(size.y()) * size.z() + 1, 0);
   for (const CellRun& run : cells.runs) ++begin[static_cast<std::size_t>(run.z) * size.y() + run.y + 1];
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
@@ -79,29 +62,43 @@ std::vector<int> mirror_images(const Cells& cells, const Vec3i& size) {
 
 }  // namespace
 
-CellProblem::CellProblem(const Cells& cells, const Vec3i& size, std::span<const RegionMap> views,
-                         const CellWeights& weights)
+std::array<std::vector<CellProblem::Pay>, 5> CellProblem::jump_costs(int resolution, double side,
+                                                                     const CellWeights& weights) {
+  // In the order of Border.
+  const double stroke[] = {0, 0, 1, weights.open, 0}, jump[] = {weights.unexplained, 0, 0, 0, weights.colour};
+  std::array<std::vector<Pay>, 5> out;
+  for (std::size_t b = 0; b < out.size(); ++b)
+    for (int depth = 0; depth < resolution; ++depth) {
+      const double size = static_cast<double>(depth) / resolution;
+      out[b].push_back({static_cast<std::int32_t>(std::lround(side * stroke[b] * (1 - kStrokeJump(size)))),
+                        static_cast<std::int32_t>(std::lround(side * jump[b] * kUnexplainedJump(size)))});
+    }
+  return out;
+}
+
+CellProblem::CellProblem(const Cells& cells, std::span<const RegionMap> views, const CellWeights& weights)
     : keep_(cells.count, 1), classes_of_(cells.count), contacts_(cells.count) {
-  const JumpCost cost(size.maxCoeff(), weights);
-  const double side = kUnit * 128 / size.maxCoeff(), face = side * side / kUnit, voxel = face * side / kUnit;
+  const double side = kUnit * 128 / cells.size.maxCoeff(), face = side * side / kUnit, voxel = face * side / kUnit;
   sight_.resize(cells.count);
   buried_ = voxel * weights.buried;
   volume_ = cells.volume;
-  int v = -1;
-  for (const RegionMap& view : views) {
-    ++v;
-    const Rays rays = trace(cells, size, view.view);
+  std::vector<Pay> tables;
+  const auto pays = jump_costs(cells.size.maxCoeff(), side, weights);
+  for (int v = 0; v < static_cast<int>(views.size()); ++v) {
+    const RegionMap& view = views[v];
+    const Rays& rays = cells.rays[v];
     std::unordered_map<std::vector<int>, int, SequenceHash> class_of;
     std::vector<int> at(static_cast<std::size_t>(rays.width) * rays.height, -1);
+    std::vector<int> sequence;
     for (int j = 0; j < rays.height; ++j)
       for (int i = 0; i < rays.width; ++i) {
         const auto ray = rays(i, j);
         if (ray.empty()) continue;
-        std::vector<int> sequence;
+        sequence.clear();
         for (const RayEntry& e : ray) sequence.push_back(e.cell);
-        const auto [found, fresh] = class_of.emplace(std::move(sequence), static_cast<int>(classes_.size()));
+        const auto [found, fresh] = class_of.try_emplace(sequence, static_cast<int>(classes_.size()));
         if (fresh) {
-          classes_.push_back({static_cast<int>(order_.size()), static_cast<int>(ray.size()), 0, 0, v, 0, {}});
+          classes_.push_back({static_cast<int>(order_.size()), static_cast<int>(ray.size()), 0, v, 0, {}});
           for (const RayEntry& e : ray) {
             order_.push_back(e.cell);
             classes_of_[e.cell].push_back(found->second);
@@ -122,17 +119,25 @@ CellProblem::CellProblem(const Cells& cells, const Vec3i& size, std::span<const 
       const auto [found, fresh] =
           group_of.emplace(static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint32_t>(b), groups_.size());
       if (fresh) {
-        groups_.push_back({a, b, static_cast<int>(tables_.size()), {}});
-        tables_.resize(tables_.size() + ra.size() * rb.size());
+        const int columns = a == b ? 1 : static_cast<int>(rb.size()) + 1;
+        groups_.push_back({a, b, static_cast<int>(tables.size()), columns, {}});
+        tables.resize(tables.size() + (ra.size() + 1) * columns);
         classes_[a].groups.push_back(found->second);
         if (a != b) classes_[b].groups.push_back(found->second);
       }
-      Pay* table = tables_.data() + groups_[found->second].table;
-      for (const RayEntry& ea : ra)
-        for (const RayEntry& eb : rb) {
-          const int jump = std::abs(ea.depth - eb.depth);
-          table->stroke += static_cast<std::int32_t>(std::lround(side * cost.stroke(border, jump)));
-          table++->jump += static_cast<std::int32_t>(std::lround(side * cost.elsewhere(border, jump)));
+      Pay* table = tables.data() + groups_[found->second].table;
+      const Pay* pay = pays[static_cast<int>(border)].data();
+      const auto add = [&](const RayEntry& ea, const RayEntry& eb) {
+        const Pay& more = pay[std::abs(ea.depth - eb.depth)];
+        table->stroke += more.stroke;
+        table++->jump += more.jump;
+      };
+      if (a == b)  // both meet the same cell first
+        for (std::size_t k = 0; k < ra.size(); ++k) add(ra[k], rb[k]);
+      else
+        for (const RayEntry& ea : ra) {
+          for (const RayEntry& eb : rb) add(ea, eb);
+          ++table;
         }
     };
     for (int j = 0; j < rays.height; ++j)
@@ -141,7 +146,7 @@ CellProblem::CellProblem(const Cells& cells, const Vec3i& size, std::span<const 
         if (j + 1 < rays.height) pair(i, j, i, j + 1, view.below(i, j));
       }
   }
-  for (const CellContact& c : contacts(cells, size)) {
+  for (const CellContact& c : contacts(cells)) {
     const std::int64_t area = std::llround(face * weights.area * c.faces);
     contacts_[c.a].push_back({c.b, area});
     if (c.b >= 0)
@@ -150,10 +155,9 @@ CellProblem::CellProblem(const Cells& cells, const Vec3i& size, std::span<const 
       energy_ += area;
   }
   for (const std::int64_t v : cells.volume) volume_cost_.push_back(std::llround(voxel * weights.volume * v));
-  for (Class& c : classes_) {
-    c.first = first_of(c);
-    set_open(c, 0, std::min(c.first + 1, c.length), 1);
-  }
+  tables_ = std::make_shared<const std::vector<Pay>>(std::move(tables));
+  first_.assign(classes_.size(), 0);  // all is kept
+  for (const Class& c : classes_) set_open(c, 0, 1, 1);
   for (Group& g : groups_) {
     g.value = value_of(g);
     strokes_ += g.value.stroke, jumps_ += g.value.jump;
@@ -164,7 +168,7 @@ CellProblem::CellProblem(const Cells& cells, const Vec3i& size, std::span<const 
   touch_mark_.assign(cells.count, 0);
   clash_ = clashes(cells, views, face * weights.agreement);
   symmetry_ = voxel * weights.symmetry;
-  mirror_ = weights.symmetry > 0 ? mirror_images(cells, size) : std::vector<int>(cells.count, -1);
+  mirror_ = weights.symmetry > 0 ? mirror_images(cells) : std::vector<int>(cells.count, -1);
   touched_.clear();
   for (int c = 0; c < cells.count; ++c) {
     own_now_.push_back(own_cost(c));
@@ -172,16 +176,14 @@ CellProblem::CellProblem(const Cells& cells, const Vec3i& size, std::span<const 
   }
 }
 
-int CellProblem::first_of(const Class& c) const {
-  int k = 0;
+int CellProblem::first_of(const Class& c, int k) const {
   while (k < c.length && !keep_[order_[c.begin + k]]) ++k;
   return k;
 }
 
 CellProblem::Pay CellProblem::value_of(const Group& g) const {
-  const Class &a = classes_[g.a], &b = classes_[g.b];
-  if (a.first == a.length || b.first == b.length) return {};
-  return tables_[g.table + a.first * b.length + b.first];
+  const int row = first_[g.a] * g.columns, column = g.a == g.b ? 0 : first_[g.b];
+  return (*tables_)[g.table + row + column];
 }
 
 void CellProblem::set_open(const Class& c, int from, int to, int sign) {
@@ -211,8 +213,10 @@ std::int64_t CellProblem::own_cost(int cell) const {
 std::int64_t CellProblem::flip(std::span<const int> cells) {
   ++stamp_;
   const std::int64_t before = energy_, misfit_before = misfit();
+  bool added = false;
   for (const int c : cells) {
     keep_[c] ^= 1;
+    added |= keep_[c] != 0;
     energy_ += keep_[c] ? -volume_cost_[c] : volume_cost_[c];
     if (const int m = mirror_[c]; m >= 0) {
       const std::int64_t cost = std::llround(symmetry_ * std::min(volume_[c], volume_[m]));
@@ -223,24 +227,24 @@ std::int64_t CellProblem::flip(std::span<const int> cells) {
       energy_ += (keep_[c] != other) ? contact.cost : -contact.cost;
     }
   }
-  std::vector<int> changed;
+  changed_.clear();
   for (const int c : cells)
     for (const int k : classes_of_[c]) {
       if (class_mark_[k] == stamp_) continue;
       class_mark_[k] = stamp_;
-      Class& ray = classes_[k];
-      const int first = first_of(ray);
-      if (first == ray.first) continue;
-      if (ray.first == ray.length) uncovered_ -= ray.empty;
+      const Class& ray = classes_[k];
+      const int old = first_[k], first = first_of(ray, added ? 0 : old);
+      if (first == old) continue;
+      if (old == ray.length) uncovered_ -= ray.empty;
       if (first == ray.length) uncovered_ += ray.empty;
       // A cell is open to a ray as long as nothing is kept before it: up to and with the first kept one.
-      const int was = std::min(ray.first + 1, ray.length), now = std::min(first + 1, ray.length);
+      const int was = std::min(old + 1, ray.length), now = std::min(first + 1, ray.length);
       if (now > was) set_open(ray, was, now, 1);
       if (now < was) set_open(ray, now, was, -1);
-      ray.first = first;
-      changed.push_back(k);
+      first_[k] = first;
+      changed_.push_back(k);
     }
-  for (const int k : changed)
+  for (const int k : changed_)
     for (const int g : classes_[k].groups) {
       if (group_mark_[g] == stamp_) continue;
       group_mark_[g] = stamp_;

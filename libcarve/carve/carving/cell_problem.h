@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -44,7 +45,7 @@ class CellProblem {
  public:
   static constexpr double kUnit = 1024;
 
-  CellProblem(const Cells& cells, const Vec3i& size, std::span<const RegionMap> views, const CellWeights& weights);
+  CellProblem(const Cells& cells, std::span<const RegionMap> views, const CellWeights& weights);
 
   int cells() const { return static_cast<int>(keep_.size()); }
   std::span<const std::uint8_t> keep() const { return keep_; }
@@ -63,7 +64,6 @@ class CellProblem {
  private:
   struct Class {
     int begin, length;   // in order_
-    int first;           // position of the first kept cell; length if none
     std::int64_t empty;  // cost if none
     int view;
     std::int64_t pixels;
@@ -73,7 +73,8 @@ class CellProblem {
     std::int32_t stroke = 0, jump = 0;
   };
   struct Group {
-    int a, b, table;
+    int a, b;            // classes
+    int table, columns;  // in tables_: a row for each first cell of a and none, a column for each of b; one if a is b
     Pay value;
   };
   struct Contact {
@@ -83,7 +84,9 @@ class CellProblem {
   struct Sight {
     std::int64_t pixels = 0, open = 0;  // rays that meet the cell; those that meet nothing before it
   };
-  int first_of(const Class& c) const;
+  /// What a pair of neighbouring pixels pays, by what lies between them and by its depth jump in voxels.
+  static std::array<std::vector<Pay>, 5> jump_costs(int resolution, double side, const CellWeights& weights);
+  int first_of(const Class& c, int from) const;
   std::int64_t own_cost(int cell) const;
   void set_open(const Class& c, int from, int to, int sign);
   Pay value_of(const Group& g) const;
@@ -91,9 +94,10 @@ class CellProblem {
   std::vector<std::uint8_t> keep_;
   std::vector<int> order_;
   std::vector<Class> classes_;
+  std::vector<int> first_;  // per class, position of the first kept cell; its length if none
   std::vector<Group> groups_;
-  std::vector<Pay> tables_;
-  std::vector<std::vector<int>> classes_of_;  // per cell
+  std::shared_ptr<const std::vector<Pay>> tables_;  // of all copies
+  std::vector<std::vector<int>> classes_of_;        // per cell
   std::vector<std::vector<Contact>> contacts_;
   std::vector<std::int64_t> volume_cost_, volume_;
   double buried_ = 0;
@@ -103,7 +107,7 @@ class CellProblem {
   std::vector<int> mirror_;
   double symmetry_ = 0;
   std::vector<int> touched_, touch_mark_;
-  std::vector<int> class_mark_, group_mark_;
+  std::vector<int> changed_, class_mark_, group_mark_;
   int stamp_ = 0;
   std::int64_t energy_ = 0, strokes_ = 0, jumps_ = 0, uncovered_ = 0;
 };

@@ -14,17 +14,21 @@ struct Order {
   std::array<std::vector<std::vector<int>>, 6> before, behind;  // per view and cell: met directly before, after it
 };
 
-Order order_of(const Cells& cells, const Vec3i& size, std::span<const RegionMap> views) {
+Order order_of(const Cells& cells) {
   Order out;
-  for (std::size_t v = 0; v < views.size(); ++v) {
-    const Rays rays = trace(cells, size, views[v].view);
+  for (std::size_t v = 0; v < cells.rays.size(); ++v) {
+    const Rays& rays = cells.rays[v];
     std::vector<std::int64_t> sum(cells.count, 0), seen(cells.count, 0);
     for (const RayEntry& e : rays.entries) {
       sum[e.cell] += e.depth;
       ++seen[e.cell];
     }
-    std::vector<std::vector<int>> of_region(views[v].count);
-    for (int c = 0; c < cells.count; ++c) of_region[cells.regions[c][v]].push_back(c);
+    std::vector<std::vector<int>> of_region;
+    for (int c = 0; c < cells.count; ++c) {
+      const std::size_t region = cells.regions[c][v];
+      if (region >= of_region.size()) of_region.resize(region + 1);
+      of_region[region].push_back(c);
+    }
     for (std::vector<int>& column : of_region) {
       std::ranges::stable_sort(column, [&](int a, int b) { return sum[a] * seen[b] < sum[b] * seen[a]; });
       if (column.size() > 1) out.columns.push_back(std::move(column));
@@ -266,9 +270,8 @@ void restore_unexplained(CellProblem& problem) {
   }
 }
 
-SearchEnd search_cells(CellProblem& problem, const Cells& cells, const Vec3i& size, std::span<const RegionMap> views,
-                       const SearchLimit& limit) {
-  return Search(problem, order_of(cells, size, views), static_cast<int>(views.size()), limit).run();
+SearchEnd search_cells(CellProblem& problem, const Cells& cells, const SearchLimit& limit) {
+  return Search(problem, order_of(cells), static_cast<int>(cells.rays.size()), limit).run();
 }
 
 }  // namespace carve

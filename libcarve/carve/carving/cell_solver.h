@@ -27,7 +27,6 @@ void restore_unexplained(CellProblem& problem);
 
 /// Lowers the problem's energy from where it stands: descends over single cells and over the columns of cells behind
 /// each region, anneals \cite kirkpatrick_1983, descends again.
-SearchEnd search_cells(CellProblem& problem, const Cells& cells, const Vec3i& size, std::span<const RegionMap> views,
-                       const SearchLimit& limit);
+SearchEnd search_cells(CellProblem& problem, const Cells& cells, const SearchLimit& limit);
 
 }  // namespace carve

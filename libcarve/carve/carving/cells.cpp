@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <stdexcept>
@@ -38,10 +39,12 @@ void overlaps(const std::vector<CellRun>& runs, std::pair<int, int> a, std::pair
 class Partition {
  public:
   Partition(const VoxelGrid& hull, std::span<const RegionMap> views) : hull_(hull), views_(views) {
+    if (views.size() > 6) throw std::invalid_argument("views must be at most 6, got " + std::to_string(views.size()));
     for (const RegionMap& view : views) layouts_.emplace_back(hull.size(), view.view);
   }
 
   Cells run() {
+    cells_.size = hull_.size();
     for (int z = 0; z < hull_.size().z(); ++z)
       for (int y = 0; y < hull_.size().y(); ++y) cut_row(y, z);
     parent_.resize(cells_.runs.size());
@@ -127,21 +130,21 @@ class Partition {
   std::vector<int> parent_;
 };
 
-}  // namespace
-
-Cells partition(const VoxelGrid& hull, std::span<const RegionMap> views) {
-  if (views.size() > 6) throw std::invalid_argument("views must be at most 6, got " + std::to_string(views.size()));
-  return Partition(hull, views).run();
-}
-
-Rays trace(const Cells& cells, const Vec3i& size, View view) {
+Rays trace(const Cells& cells, View view) {
+  const Vec3i& size = cells.size;
   const ShadowLayout layout(size, view);
-  std::vector<std::vector<RayEntry>> met(static_cast<std::size_t>(layout.width) * layout.height);
+  struct Met {
+    RayEntry entry;
+    int before;  // in met; -1: the first
+  };
+  std::vector<Met> met;
+  std::vector<int> last(static_cast<std::size_t>(layout.width) * layout.height, -1);  // per pixel, in met
   const auto meet = [&](int i, int j, int cell, int depth) {
-    auto& ray = met[static_cast<std::size_t>(j) * layout.width + i];
-    if (!ray.empty() && ray.back().cell == cell) return;
-    if (std::ranges::any_of(ray, [&](const RayEntry& e) { return e.cell == cell; })) return;
-    ray.push_back({cell, depth});
+    int& newest = last[static_cast<std::size_t>(j) * layout.width + i];
+    for (int k = newest; k >= 0; k = met[k].before)
+      if (met[k].entry.cell == cell) return;
+    met.push_back({{cell, depth}, newest});
+    newest = static_cast<int>(met.size()) - 1;
   };
   const std::vector<int> begin = row_offsets(cells.runs, size);
   const int axis = layout.frame.toward.axis;
@@ -172,14 +175,59 @@ Rays trace(const Cells& cells, const Vec3i& size, View view) {
       for (int y = 0; y < size.y(); ++y) visit_row(y, from_high ? size.z() - 1 - d : d, d);
   }
   Rays rays{layout.width, layout.height, {0}, {}};
-  for (const auto& ray : met) {
-    rays.entries.insert(rays.entries.end(), ray.begin(), ray.end());
+  rays.begin.reserve(last.size() + 1);
+  rays.entries.reserve(met.size());
+  for (const int newest : last) {
+    for (int k = newest; k >= 0; k = met[k].before) rays.entries.push_back(met[k].entry);
+    std::reverse(rays.entries.begin() + rays.begin.back(), rays.entries.end());
     rays.begin.push_back(static_cast<int>(rays.entries.size()));
   }
   return rays;
 }
 
-std::vector<CellContact> contacts(const Cells& cells, const Vec3i& size) {
+}  // namespace
+
+Cells partition(const VoxelGrid& hull, std::span<const RegionMap> views) {
+  Cells cells = Partition(hull, views).run();
+  for (const RegionMap& view : views) cells.rays.push_back(trace(cells, view.view));
+  return cells;
+}
+
+Cells transfer(const Cells& from, const VoxelGrid& from_grid, const VoxelGrid& hull, std::span<const RegionMap> views) {
+  Cells cells = Partition(hull, views).run();
+  Raster<int> row_of(from.size.x(), from.size.y() * from.size.z(), from.count);  // its cell at each voxel
+  for (const CellRun& run : from.runs)
+    std::fill(&row_of(run.x0, run.z * from.size.y() + run.y), &row_of(run.x1 - 1, run.z * from.size.y() + run.y) + 1,
+              run.cell);
+  const auto index = [&](int axis, int i) {
+    const double at = hull.low()[axis] + (i + 0.5) * hull.spacing();
+    return std::clamp(static_cast<int>(std::floor((at - from_grid.low()[axis]) / from_grid.spacing())), 0,
+                      from.size[axis] - 1);
+  };
+  std::vector<int> column;
+  for (int x = 0; x < cells.size.x(); ++x) column.push_back(index(0, x));
+
+  std::vector<std::map<int, std::int64_t>> shared(cells.count);
+  for (const CellRun& run : cells.runs) {
+    const int row = index(2, run.z) * from.size.y() + index(1, run.y);
+    for (int x = run.x0; x < run.x1; ++x)
+      if (const int other = row_of(column[x], row); other < from.count) ++shared[run.cell][other];
+  }
+  std::vector<int> name(cells.count, from.count);
+  for (int c = 0; c < cells.count; ++c) {
+    const auto most = std::ranges::max_element(shared[c], {}, [](const auto& part) { return part.second; });
+    if (most != shared[c].end()) name[c] = most->first;
+  }
+  Cells out{cells.size, from.count + 1, std::move(cells.runs), std::vector<std::int64_t>(from.count + 1, 0), {}, {}};
+  for (CellRun& run : out.runs) {
+    run.cell = name[run.cell];
+    out.volume[run.cell] += run.x1 - run.x0;
+  }
+  return out;
+}
+
+std::vector<CellContact> contacts(const Cells& cells) {
+  const Vec3i& size = cells.size;
   std::unordered_map<std::uint64_t, std::int64_t> faces;
   std::vector<std::int64_t> outside(cells.count, 0);
   for (int c = 0; c < cells.count; ++c) outside[c] = 6 * cells.volume[c];

@@ -12,17 +12,6 @@ struct CellRun {
   int y, z, x0, x1, cell;
 };
 
-/// The hull cut into cells: connected sets of voxels that lie behind the same region of every view.
-struct Cells {
-  int count = 0;
-  std::vector<CellRun> runs;                // by z, then y, then x
-  std::vector<std::int64_t> volume;         // voxels per cell
-  std::vector<std::array<int, 6>> regions;  // per cell, its region in each view; -1 past the last view
-};
-
-/// \throws std::invalid_argument if there are more than six views
-Cells partition(const VoxelGrid& hull, std::span<const RegionMap> views);
-
 /// Where a cell is first met along a pixel's ray.
 struct RayEntry {
   int cell;
@@ -39,14 +28,30 @@ struct Rays {
     return std::span(entries).subspan(begin[p], begin[p + 1] - begin[p]);
   }
 };
-Rays trace(const Cells& cells, const Vec3i& size, View view);
+
+/// The hull cut into cells: connected sets of voxels that lie behind the same region of every view.
+struct Cells {
+  Vec3i size = Vec3i::Zero();  // of the hull's grid
+  int count = 0;
+  std::vector<CellRun> runs;                // by z, then y, then x
+  std::vector<std::int64_t> volume;         // voxels per cell
+  std::vector<std::array<int, 6>> regions;  // per cell, its region in each view; -1 past the last view
+  std::vector<Rays> rays;                   // per view
+};
+
+/// \throws std::invalid_argument if there are more than six views
+Cells partition(const VoxelGrid& hull, std::span<const RegionMap> views);
+
+/// Cells of another grid's hull on this one: its own cells, each as part of the one that it shares most space with; one
+/// that shares space with none becomes part of a last cell, one more. Without regions and rays. \throws as partition
+Cells transfer(const Cells& from, const VoxelGrid& from_grid, const VoxelGrid& hull, std::span<const RegionMap> views);
 
 /// Voxel faces between two cells; b = -1: to the outside of the hull. a > b.
 struct CellContact {
   int a, b;
   std::int64_t faces;
 };
-std::vector<CellContact> contacts(const Cells& cells, const Vec3i& size);
+std::vector<CellContact> contacts(const Cells& cells);
 
 /// The hull's voxels whose cell is kept.
 VoxelGrid assemble(const VoxelGrid& hull, const Cells& cells, std::span<const std::uint8_t> keep);

@@ -24,6 +24,7 @@ inline std::span<const char* const> names(Consistency) {
 
 struct ConsistencyOptions {
   Consistency arm = Consistency::solver;
+  std::optional<int> grid = 128;
   RegionOptions regions = {};
   CellWeights weights = {};
   int nodes = 80000;
@@ -34,6 +35,8 @@ struct ConsistencyOptions {
 template <class Visitor>
 void visit_fields(ConsistencyOptions& o, Visitor&& field) {
   field("arm", o.arm, "how concave parts are carved");
+  field("grid", o.grid, 8, kLargestGrid,
+        "voxels along the longest side of the grid on which cells are decided; auto: those of the carving");
   visit_fields(o.regions, field);
   visit_fields(o.weights, field);
   field("nodes", o.nodes, 0, 100000000, "most choices the solver looks at before it takes the best so far");
