@@ -82,8 +82,9 @@ CellProblem::CellProblem(const Cells& cells, std::span<const RegionMap> views, c
   sight_.resize(cells.count);
   buried_ = voxel * weights.buried;
   volume_ = cells.volume;
-  std::vector<Pay> tables;
-  const auto pays = jump_costs(cells.size.maxCoeff(), side, weights);
+  auto costs = std::make_shared<Costs>();
+  costs->jumps = jump_costs(cells.size.maxCoeff(), side, weights);
+  std::vector<std::vector<PixelPair>> pairs;  // per group
   for (int v = 0; v < static_cast<int>(views.size()); ++v) {
     const RegionMap& view = views[v];
     const Rays& rays = cells.rays[v];
@@ -109,41 +110,33 @@ CellProblem::CellProblem(const Cells& cells, std::span<const RegionMap> views, c
         classes_[found->second].empty += std::llround(face * weights.silhouette);
         at[static_cast<std::size_t>(j) * rays.width + i] = found->second;
       }
+    // The depths along each pixel's ray, and -1 where it meets nothing any more.
+    std::vector<int> depths_at(at.size(), -1);
+    for (int j = 0; j < rays.height; ++j)
+      for (int i = 0; i < rays.width; ++i) {
+        depths_at[static_cast<std::size_t>(j) * rays.width + i] = static_cast<int>(costs->depths.size());
+        for (const RayEntry& e : rays(i, j)) costs->depths.push_back(static_cast<std::int16_t>(e.depth));
+        costs->depths.push_back(-1);
+      }
     std::unordered_map<std::uint64_t, int> group_of;
-    const auto pair = [&](int i, int j, int i2, int j2, Border border) {
-      if (border == Border::near) return;
-      const int a = at[static_cast<std::size_t>(j) * rays.width + i];
-      const int b = at[static_cast<std::size_t>(j2) * rays.width + i2];
-      if (a < 0 || b < 0) return;
-      const auto ra = rays(i, j), rb = rays(i2, j2);
+    const auto pair = [&](std::size_t p, std::size_t q, Border border) {
+      const int a = at[p], b = at[q];
+      if (border == Border::near || a < 0 || b < 0) return;
       const auto [found, fresh] =
           group_of.emplace(static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint32_t>(b), groups_.size());
       if (fresh) {
-        const int columns = a == b ? 1 : static_cast<int>(rb.size()) + 1;
-        groups_.push_back({a, b, static_cast<int>(tables.size()), columns, {}});
-        tables.resize(tables.size() + (ra.size() + 1) * columns);
+        groups_.push_back({a, b});
+        pairs.emplace_back();
         classes_[a].groups.push_back(found->second);
         if (a != b) classes_[b].groups.push_back(found->second);
       }
-      Pay* table = tables.data() + groups_[found->second].table;
-      const Pay* pay = pays[static_cast<int>(border)].data();
-      const auto add = [&](const RayEntry& ea, const RayEntry& eb) {
-        const Pay& more = pay[std::abs(ea.depth - eb.depth)];
-        table->stroke += more.stroke;
-        table++->jump += more.jump;
-      };
-      if (a == b)  // both meet the same cell first
-        for (std::size_t k = 0; k < ra.size(); ++k) add(ra[k], rb[k]);
-      else
-        for (const RayEntry& ea : ra) {
-          for (const RayEntry& eb : rb) add(ea, eb);
-          ++table;
-        }
+      pairs[found->second].push_back({depths_at[p], depths_at[q], border});
     };
     for (int j = 0; j < rays.height; ++j)
       for (int i = 0; i < rays.width; ++i) {
-        if (i + 1 < rays.width) pair(i, j, i + 1, j, view.right(i, j));
-        if (j + 1 < rays.height) pair(i, j, i, j + 1, view.below(i, j));
+        const std::size_t p = static_cast<std::size_t>(j) * rays.width + i;
+        if (i + 1 < rays.width) pair(p, p + 1, view.right(i, j));
+        if (j + 1 < rays.height) pair(p, p + rays.width, view.below(i, j));
       }
   }
   for (const CellContact& c : contacts(cells)) {
@@ -155,7 +148,8 @@ CellProblem::CellProblem(const Cells& cells, std::span<const RegionMap> views, c
       energy_ += area;
   }
   for (const std::int64_t v : cells.volume) volume_cost_.push_back(std::llround(voxel * weights.volume * v));
-  tables_ = std::make_shared<const std::vector<Pay>>(std::move(tables));
+  for (std::size_t g = 0; g < groups_.size(); ++g) tabulate(groups_[g], pairs[g], *costs);
+  costs_ = std::move(costs);
   first_.assign(classes_.size(), 0);  // all is kept
   for (const Class& c : classes_) set_open(c, 0, 1, 1);
   for (Group& g : groups_) {
@@ -181,9 +175,43 @@ int CellProblem::first_of(const Class& c, int k) const {
   return k;
 }
 
+/// Few pairs are added up when they are asked for: what is in the cache already is faster than a table that is not.
+void CellProblem::tabulate(Group& group, std::span<const PixelPair> pairs, Costs& costs) const {
+  constexpr std::size_t kFew = 6;
+  if (pairs.size() <= kFew) {
+    group.begin = static_cast<int>(costs.pairs.size());
+    group.pairs = static_cast<int>(pairs.size());
+    costs.pairs.insert(costs.pairs.end(), pairs.begin(), pairs.end());
+    return;
+  }
+  const int rows = classes_[group.a].length, columns = classes_[group.b].length;
+  group.begin = static_cast<int>(costs.tables.size());
+  group.columns = group.a == group.b ? 1 : columns + 1;
+  costs.tables.resize(costs.tables.size() + (rows + 1) * group.columns);
+  for (const PixelPair& pair : pairs) {
+    const auto add = [&](int k, int l, int place) {
+      const Pay pay = costs.of(pair, k, l);
+      costs.tables[group.begin + place].stroke += pay.stroke;
+      costs.tables[group.begin + place].jump += pay.jump;
+    };
+    for (int k = 0; k < rows; ++k) {
+      if (group.a == group.b)  // both meet the same cell first
+        add(k, k, k);
+      else
+        for (int l = 0; l < columns; ++l) add(k, l, k * group.columns + l);
+    }
+  }
+}
+
 CellProblem::Pay CellProblem::value_of(const Group& g) const {
-  const int row = first_[g.a] * g.columns, column = g.a == g.b ? 0 : first_[g.b];
-  return (*tables_)[g.table + row + column];
+  const int a = first_[g.a], b = first_[g.b];
+  if (g.columns > 0) return costs_->tables[g.begin + a * g.columns + (g.a == g.b ? 0 : b)];
+  Pay sum;
+  for (int k = g.begin; k < g.begin + g.pairs; ++k) {
+    const Pay pay = costs_->of(costs_->pairs[k], a, b);
+    sum.stroke += pay.stroke, sum.jump += pay.jump;
+  }
+  return sum;
 }
 
 void CellProblem::set_open(const Class& c, int from, int to, int sign) {
@@ -248,6 +276,7 @@ std::int64_t CellProblem::flip(std::span<const int> cells) {
     for (const int g : classes_[k].groups) {
       if (group_mark_[g] == stamp_) continue;
       group_mark_[g] = stamp_;
+      ++looks_;
       Pay& value = groups_[g].value;
       strokes_ -= value.stroke, jumps_ -= value.jump;
       value = value_of(groups_[g]);

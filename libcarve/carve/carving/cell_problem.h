@@ -54,6 +54,7 @@ class CellProblem {
   std::int64_t strokes() const { return strokes_; }                       // of that: strokes without a depth jump
   std::int64_t jumps() const { return jumps_; }                           // depth jumps away from strokes
   std::int64_t flip(std::span<const int> cells);                          // toggles them; the change of energy
+  std::int64_t looks() const { return looks_; }                           // at pairs of rays, by all flips so far
   int mirror(int cell) const { return mirror_[cell]; }                    // its mirror image; -1: none, or itself
   /// Calls use(other) for the cells that share a face with `cell`; -1: the outside.
   template <class Use>
@@ -72,10 +73,30 @@ class CellProblem {
   struct Pay {
     std::int32_t stroke = 0, jump = 0;
   };
+  /// Two neighbouring pixels: where their rays' depths begin, and what lies between them.
+  struct PixelPair {
+    int a, b;
+    Border border;
+  };
+  /// What pairs of neighbouring pixels pay.
+  struct Costs {
+    std::array<std::vector<Pay>, 5> jumps;  // by Border and depth jump in voxels
+    std::vector<std::int16_t> depths;       // along each pixel's ray; -1 ends it
+    std::vector<PixelPair> pairs;
+    std::vector<Pay> tables;
+    /// If the pixels see the k-th and the l-th cell of their rays.
+    Pay of(const PixelPair& pair, int k, int l) const {
+      const int a = depths[pair.a + k], b = depths[pair.b + l];
+      return a < 0 || b < 0 ? Pay{} : jumps[static_cast<int>(pair.border)][a < b ? b - a : a - b];
+    }
+  };
+  /// All neighbouring pixels of two classes.
   struct Group {
-    int a, b;            // classes
-    int table, columns;  // in tables_: a row for each first cell of a and none, a column for each of b; one if a is b
-    Pay value;
+    int a, b;
+    int begin = 0;    // in tables, or in pairs
+    int columns = 0;  // of a table: a row for each first cell of a and none, a column for each of b; one if a is b
+    int pairs = 0;    // where there is no table
+    Pay value = {};
   };
   struct Contact {
     int other;  // -1: outside
@@ -84,11 +105,11 @@ class CellProblem {
   struct Sight {
     std::int64_t pixels = 0, open = 0;  // rays that meet the cell; those that meet nothing before it
   };
-  /// What a pair of neighbouring pixels pays, by what lies between them and by its depth jump in voxels.
   static std::array<std::vector<Pay>, 5> jump_costs(int resolution, double side, const CellWeights& weights);
   int first_of(const Class& c, int from) const;
   std::int64_t own_cost(int cell) const;
   void set_open(const Class& c, int from, int to, int sign);
+  void tabulate(Group& group, std::span<const PixelPair> pairs, Costs& costs) const;
   Pay value_of(const Group& g) const;
 
   std::vector<std::uint8_t> keep_;
@@ -96,8 +117,8 @@ class CellProblem {
   std::vector<Class> classes_;
   std::vector<int> first_;  // per class, position of the first kept cell; its length if none
   std::vector<Group> groups_;
-  std::shared_ptr<const std::vector<Pay>> tables_;  // of all copies
-  std::vector<std::vector<int>> classes_of_;        // per cell
+  std::shared_ptr<const Costs> costs_;        // of all copies
+  std::vector<std::vector<int>> classes_of_;  // per cell
   std::vector<std::vector<Contact>> contacts_;
   std::vector<std::int64_t> volume_cost_, volume_;
   double buried_ = 0;
@@ -109,7 +130,7 @@ class CellProblem {
   std::vector<int> touched_, touch_mark_;
   std::vector<int> changed_, class_mark_, group_mark_;
   int stamp_ = 0;
-  std::int64_t energy_ = 0, strokes_ = 0, jumps_ = 0, uncovered_ = 0;
+  std::int64_t energy_ = 0, strokes_ = 0, jumps_ = 0, uncovered_ = 0, looks_ = 0;
 };
 
 }  // namespace carve

@@ -60,14 +60,19 @@ class Search {
     descend();
     anneal();
     descend();
-    return {nodes_, !late_};
+    return {spent(), !late_};
   }
 
  private:
   /// The clock is asked now and then only; most searches have none to ask.
   bool ended() {
     if (until_ && !late_ && ++asked_ % 64 == 0) late_ = std::chrono::steady_clock::now() >= *until_;
-    return late_ || nodes_ >= limit_;
+    return late_ || spent() >= limit_;
+  }
+  /// Choices looked at. One that many rays see counts for several, so that the time does not depend on the drawing.
+  std::int64_t spent() const {
+    constexpr int kLooks = 32;
+    return nodes_ + (problem_.looks() - looks_before_) / kLooks;
   }
   void flip(int cell) {
     ++nodes_;
@@ -174,13 +179,13 @@ class Search {
 
   void anneal() {
     constexpr double kHot = 50, kCold = 1;  // in units of the energy: sides of grid pixels
-    const std::int64_t start = nodes_, steps = (limit_ - nodes_) * 9 / 10;
+    const std::int64_t start = spent(), steps = (limit_ - start) * 9 / 10;
     if (problem_.cells() == 0 || steps <= 0) return;
     std::vector<std::uint8_t> best(problem_.keep().begin(), problem_.keep().end());
     std::int64_t best_energy = problem_.energy();
     std::vector<int> move;
-    while (nodes_ - start < steps && !ended()) {
-      const double done = static_cast<double>(nodes_ - start) / steps;
+    while (spent() - start < steps && !ended()) {
+      const double done = static_cast<double>(spent() - start) / steps;
       const double temperature = CellProblem::kUnit * kHot * std::pow(kCold / kHot, done);
       random_move(move);
       mirror(move);
@@ -219,7 +224,7 @@ class Search {
   CellProblem& problem_;
   Order order_;
   int views_;
-  std::int64_t limit_, nodes_ = 0, asked_ = 0;
+  std::int64_t limit_, looks_before_ = problem_.looks(), nodes_ = 0, asked_ = 0;
   std::optional<std::chrono::steady_clock::time_point> until_;
   bool late_ = false;
   std::vector<int> queue_, mark_;

@@ -187,42 +187,40 @@ Rays trace(const Cells& cells, View view) {
 
 }  // namespace
 
-Cells partition(const VoxelGrid& hull, std::span<const RegionMap> views) {
-  Cells cells = Partition(hull, views).run();
-  for (const RegionMap& view : views) cells.rays.push_back(trace(cells, view.view));
-  return cells;
+Cells partition(const VoxelGrid& hull, std::span<const RegionMap> views) { return Partition(hull, views).run(); }
+
+std::vector<Rays> trace(const Cells& cells, std::span<const RegionMap> views) {
+  std::vector<Rays> rays;
+  for (const RegionMap& view : views) rays.push_back(trace(cells, view.view));
+  return rays;
 }
 
-Cells transfer(const Cells& from, const VoxelGrid& from_grid, const VoxelGrid& hull, std::span<const RegionMap> views) {
-  Cells cells = Partition(hull, views).run();
-  Raster<int> row_of(from.size.x(), from.size.y() * from.size.z(), from.count);  // its cell at each voxel
-  for (const CellRun& run : from.runs)
-    std::fill(&row_of(run.x0, run.z * from.size.y() + run.y), &row_of(run.x1 - 1, run.z * from.size.y() + run.y) + 1,
-              run.cell);
+std::vector<int> counterparts(const Cells& own, const VoxelGrid& own_grid, const Cells& other,
+                              const VoxelGrid& other_grid) {
+  const Vec3i& size = other.size;
+  Raster<int> cell_at(size.x(), size.y() * size.z(), -1);
+  for (const CellRun& run : other.runs)
+    std::fill_n(&cell_at(run.x0, run.z * size.y() + run.y), run.x1 - run.x0, run.cell);
   const auto index = [&](int axis, int i) {
-    const double at = hull.low()[axis] + (i + 0.5) * hull.spacing();
-    return std::clamp(static_cast<int>(std::floor((at - from_grid.low()[axis]) / from_grid.spacing())), 0,
-                      from.size[axis] - 1);
+    const double at = own_grid.low()[axis] + (i + 0.5) * own_grid.spacing() - other_grid.low()[axis];
+    return std::clamp(static_cast<int>(std::floor(at / other_grid.spacing())), 0, size[axis] - 1);
   };
   std::vector<int> column;
-  for (int x = 0; x < cells.size.x(); ++x) column.push_back(index(0, x));
+  for (int x = 0; x < own.size.x(); ++x) column.push_back(index(0, x));
 
-  std::vector<std::map<int, std::int64_t>> shared(cells.count);
-  for (const CellRun& run : cells.runs) {
-    const int row = index(2, run.z) * from.size.y() + index(1, run.y);
-    for (int x = run.x0; x < run.x1; ++x)
-      if (const int other = row_of(column[x], row); other < from.count) ++shared[run.cell][other];
+  std::vector<std::map<int, std::int64_t>> shared(own.count);
+  for (const CellRun& run : own.runs) {
+    const int row = index(2, run.z) * size.y() + index(1, run.y);
+    for (int x = run.x0; x < run.x1;) {
+      const int cell = cell_at(column[x], row), first = x;
+      while (x < run.x1 && cell_at(column[x], row) == cell) ++x;
+      if (cell >= 0) shared[run.cell][cell] += x - first;
+    }
   }
-  std::vector<int> name(cells.count, from.count);
-  for (int c = 0; c < cells.count; ++c) {
-    const auto most = std::ranges::max_element(shared[c], {}, [](const auto& part) { return part.second; });
-    if (most != shared[c].end()) name[c] = most->first;
-  }
-  Cells out{cells.size, from.count + 1, std::move(cells.runs), std::vector<std::int64_t>(from.count + 1, 0), {}, {}};
-  for (CellRun& run : out.runs) {
-    run.cell = name[run.cell];
-    out.volume[run.cell] += run.x1 - run.x0;
-  }
+  std::vector<int> out(own.count, -1);
+  for (int c = 0; c < own.count; ++c)
+    if (!shared[c].empty())
+      out[c] = std::ranges::max_element(shared[c], {}, [](const auto& part) { return part.second; })->first;
   return out;
 }
 

@@ -36,15 +36,18 @@ struct Cells {
   std::vector<CellRun> runs;                // by z, then y, then x
   std::vector<std::int64_t> volume;         // voxels per cell
   std::vector<std::array<int, 6>> regions;  // per cell, its region in each view; -1 past the last view
-  std::vector<Rays> rays;                   // per view
+  std::vector<Rays> rays;                   // per view, as trace() makes them: partition() does not
 };
 
 /// \throws std::invalid_argument if there are more than six views
 Cells partition(const VoxelGrid& hull, std::span<const RegionMap> views);
 
-/// Cells of another grid's hull on this one: its own cells, each as part of the one that it shares most space with; one
-/// that shares space with none becomes part of a last cell, one more. Without regions and rays. \throws as partition
-Cells transfer(const Cells& from, const VoxelGrid& from_grid, const VoxelGrid& hull, std::span<const RegionMap> views);
+/// What the views' pixels meet.
+std::vector<Rays> trace(const Cells& cells, std::span<const RegionMap> views);
+
+/// Per cell of `own`, the cell of another grid's hull that it shares most space with; -1 if there is none.
+std::vector<int> counterparts(const Cells& own, const VoxelGrid& own_grid, const Cells& other,
+                              const VoxelGrid& other_grid);
 
 /// Voxel faces between two cells; b = -1: to the outside of the hull. a > b.
 struct CellContact {

@@ -14,57 +14,76 @@
 namespace carve {
 namespace {
 
-/// The grid on which cells are decided, and the decision's place on the grid of the hull.
+/// The hull cut into cells on a grid on which they are decided.
 struct Cut {
   std::vector<RegionMap> regions;
   Cells cells;
-  CellProblem hull;  // all cells kept
-  Cells fine;        // on the hull's grid; its last cell may be one that is always kept
+  CellProblem hull;              // all of them kept
+  std::vector<int> counterpart;  // which of them a cell of the hull's own grid is part of; -1: none
 };
 
 struct Input {
   const Carving& hull;
-  std::span<const RegionMap> regions;
   const ConsistencyOptions& options;
   SearchLimit limit;
-  const Cut* cut;  // for the arms that decide cells
+  const Cells& cells;         // of the hull's grid
+  std::span<const Cut> cuts;  // that of the options' grid first; none for arms that decide no cells
 };
 
-std::vector<RegionMap> regions_of(const ViewSet& views, const VoxelGrid& hull, const RegionOptions& options) {
-  std::vector<RegionMap> regions(views.views.size());
-  parallel_ranges(0, static_cast<int>(regions.size()), 1, [&](int first, int last) {
-    for (int v = first; v < last; ++v) regions[v] = find_regions(views.views[v], hull, options);
-  });
+std::vector<RegionMap> regions_on(std::span<const CutDrawing> drawings, const VoxelGrid& hull) {
+  std::vector<RegionMap> regions;
+  for (const CutDrawing& drawing : drawings) regions.push_back(drawing.on(hull));
   return regions;
 }
 
-/// The hull on the grid of the decision; nothing where that is the hull's own, or too coarse for any voxel.
-std::optional<VoxelGrid> other_grid(const VoxelGrid& hull, const ViewSet& views, std::optional<int> grid) {
-  if (!grid || *grid == hull.size().maxCoeff()) return {};
+/// A hull on another grid; nothing where that is too coarse for any voxel.
+std::optional<VoxelGrid> hull_on(int grid, const ViewSet& views) {
   try {
-    return carve_silhouettes(views, {.grid = *grid}).grid;
+    return carve_silhouettes(views, {.grid = grid}).grid;
   } catch (const NoResult&) {
     return {};
   }
 }
 
-Cut cut_hull(const VoxelGrid& hull, std::span<const RegionMap> regions, const ViewSet& views,
-             const ConsistencyOptions& options) {
-  const std::optional<VoxelGrid> other = other_grid(hull, views, options.grid);
-  std::vector<RegionMap> cut =
-      other ? regions_of(views, *other, options.regions) : std::vector<RegionMap>(regions.begin(), regions.end());
-  Cells cells = partition(other ? *other : hull, cut);
-  CellProblem problem(cells, cut, options.weights);
-  Cells fine = other ? transfer(cells, *other, hull, regions) : cells;
-  return {std::move(cut), std::move(cells), std::move(problem), std::move(fine)};
+/// The grids on which cells are decided. What depends on how strokes fall on the voxels differs between them.
+std::vector<int> grids(const ConsistencyOptions& options, int own) {
+  const int grid = options.grid.value_or(own);
+  if (!options.vote) return {grid};
+  return {grid, std::max(1, grid * 3 / 4), std::min(kLargestGrid, grid * 9 / 8)};
+}
+
+std::vector<Cut> cut_hull(const VoxelGrid& hull, const Cells& own, std::span<const RegionMap> regions,
+                          std::span<const CutDrawing> drawings, const ViewSet& views,
+                          const ConsistencyOptions& options) {
+  const int resolution = hull.size().maxCoeff();
+  const std::vector<int> all = grids(options, resolution);
+  std::vector<std::optional<Cut>> cuts(all.size());
+  parallel_ranges(0, static_cast<int>(all.size()), 1, [&](int first, int last) {
+    for (int k = first; k < last; ++k) {
+      const std::optional<VoxelGrid> other = all[k] == resolution ? std::nullopt : hull_on(all[k], views);
+      if (!other && all[k] != resolution && k > 0) continue;
+      std::vector<RegionMap> cut =
+          other ? regions_on(drawings, *other) : std::vector<RegionMap>(regions.begin(), regions.end());
+      Cells cells = partition(other ? *other : hull, cut);
+      cells.rays = trace(cells, cut);
+      CellProblem problem(cells, cut, options.weights);
+      std::vector<int> counterpart = counterparts(own, hull, cells, other ? *other : hull);
+      cuts[k] = Cut{std::move(cut), std::move(cells), std::move(problem), std::move(counterpart)};
+    }
+  });
+  std::vector<Cut> out;
+  for (std::optional<Cut>& cut : cuts)
+    if (cut) out.push_back(std::move(*cut));
+  return out;
 }
 
 /// The cells' voxels, for those that are open.
-std::vector<OpenCell> boxes_of(const Cells& cells, std::span<const int> open, std::span<const std::uint8_t> keep) {
+std::vector<OpenCell> boxes_of(const Cells& cells, std::span<const std::uint8_t> open,
+                               std::span<const std::uint8_t> keep) {
   std::vector<int> place(cells.count, -1);
   std::vector<OpenCell> out;
-  for (const int c : open) {
-    if (cells.volume[c] == 0) continue;
+  for (int c = 0; c < cells.count; ++c) {
+    if (!open[c]) continue;
     place[c] = static_cast<int>(out.size());
     out.push_back({cells.volume[c], keep[c] != 0, Vec3i::Constant(kLargestGrid), Vec3i::Zero()});
   }
@@ -82,38 +101,70 @@ ConsistencyResult as_printed(const Input& in) {
   return {.grid = carve_as_printed(in.hull), .ran = Consistency::as_printed};
 }
 
-/// What the problem's choice leaves of the hull, and what else explains the drawings as well.
-ConsistencyResult chosen(const Input& in, CellProblem& problem, ConsistencyResult out) {
-  const Cells& fine = in.cut->fine;
-  std::vector<std::uint8_t> keep(problem.keep().begin(), problem.keep().end());
-  keep.resize(fine.count, 1);
-  out.cells = problem.cells();
-  out.grid = assemble(in.hull.grid, fine, keep);
-  const Alternatives others = find_alternatives(problem, in.options.alternatives);
+/// What was decided on one grid.
+struct Choice {
+  CellProblem problem;
+  Consistency ran;
+  std::int64_t nodes;
+  bool in_time = true;
+};
+
+/// Decides the cells on each grid and drops what most of the decisions drop.
+template <class Decide>
+ConsistencyResult by_cells(const Input& in, Decide&& decide) {
+  const int count = static_cast<int>(in.cuts.size());
+  std::vector<std::optional<Choice>> choices(count);
+  parallel_ranges(0, count, 1, [&](int first, int last) {
+    for (int k = first; k < last; ++k) choices[k] = decide(in.cuts[k]);
+  });
+
+  ConsistencyResult out{.ran = choices[0]->ran, .cells = choices[0]->problem.cells()};
+  std::vector<int> dropped(in.cells.count, 0);
+  for (int k = 0; k < count; ++k) {
+    out.nodes += choices[k]->nodes;
+    out.in_time = out.in_time && choices[k]->in_time;
+    for (int c = 0; c < in.cells.count; ++c)
+      if (const int other = in.cuts[k].counterpart[c]; other >= 0) dropped[c] += !choices[k]->problem.keep()[other];
+  }
+  std::vector<std::uint8_t> keep(in.cells.count), open(in.cells.count, 0);
+  for (int c = 0; c < in.cells.count; ++c) keep[c] = 2 * dropped[c] <= count;
+  out.grid = assemble(in.hull.grid, in.cells, keep);
+
+  const Alternatives others = find_alternatives(choices[0]->problem, in.options.alternatives);
   out.solids = others.solids;
   out.all_solids = others.all;
-  out.open_cells = boxes_of(fine, others.cells, keep);
+  std::vector<std::uint8_t> differs(choices[0]->problem.cells(), 0);
+  for (const int c : others.cells) differs[c] = 1;
+  for (int c = 0; c < in.cells.count; ++c)
+    if (const int other = in.cuts[0].counterpart[c]; other >= 0) open[c] = differs[other];
+  out.open_cells = boxes_of(in.cells, open, keep);
   return out;
 }
 
 ConsistencyResult two_level(const Input& in) {
-  CellProblem problem = in.cut->hull;
-  const std::int64_t nodes = drop_in_one_pass(problem);
-  restore_unexplained(problem);
-  return chosen(in, problem, {.ran = Consistency::two_level, .nodes = nodes});
+  return by_cells(in, [](const Cut& cut) {
+    Choice choice{cut.hull, Consistency::two_level, 0};
+    choice.nodes = drop_in_one_pass(choice.problem);
+    restore_unexplained(choice.problem);
+    return choice;
+  });
 }
 
 /// The search, or one pass where that ends lower: a search that was cut short may.
 ConsistencyResult solver(const Input& in) {
-  CellProblem problem = in.cut->hull, other = problem;
-  const SearchEnd end = search_cells(problem, in.cut->cells, in.limit);
-  const std::int64_t nodes = end.nodes + drop_in_one_pass(other);
-  const bool fallen_back = other.energy() < problem.energy();
-  if (fallen_back) problem = std::move(other);
-  restore_unexplained(problem);
-  return chosen(
-      in, problem,
-      {.ran = fallen_back ? Consistency::two_level : Consistency::solver, .nodes = nodes, .in_time = end.in_time});
+  return by_cells(in, [&](const Cut& cut) {
+    Choice choice{cut.hull, Consistency::solver, 0};
+    const SearchEnd end = search_cells(choice.problem, cut.cells, in.limit);
+    CellProblem other = cut.hull;
+    choice.nodes = end.nodes + drop_in_one_pass(other);
+    choice.in_time = end.in_time;
+    if (other.energy() < choice.problem.energy()) {
+      choice.ran = Consistency::two_level;
+      choice.problem = std::move(other);
+    }
+    restore_unexplained(choice.problem);
+    return choice;
+  });
 }
 
 using Arm = ConsistencyResult (*)(const Input&);
@@ -127,7 +178,14 @@ ConsistencyResult apply_consistency(const Carving& hull, const ViewSet& views, c
   check("consistency", options);
   monitor.at("consistency", 0);
   if (options.arm == Consistency::none) return {.grid = hull.grid};
-  const std::vector<RegionMap> regions = regions_of(views, hull.grid, options.regions);
+  const double longest = hull.grid.size().maxCoeff() * hull.grid.spacing();
+  std::vector<std::optional<CutDrawing>> cut(views.views.size());
+  parallel_ranges(0, static_cast<int>(cut.size()), 1, [&](int first, int last) {
+    for (int v = first; v < last; ++v) cut[v].emplace(views.views[v], longest, options.regions);
+  });
+  std::vector<CutDrawing> drawings;
+  for (std::optional<CutDrawing>& drawing : cut) drawings.push_back(std::move(*drawing));
+  const std::vector<RegionMap> regions = regions_on(drawings, hull.grid);
   std::vector<View> names;
   for (const AlignedView& view : views.views) names.push_back(view.view);
   ConsistencyResult result;
@@ -136,9 +194,13 @@ ConsistencyResult apply_consistency(const Carving& hull, const ViewSet& views, c
   result.hull_score = result.score = score_strokes(hull.grid, regions);
   monitor.at("consistency", 0.3);
 
-  std::optional<Cut> cut;
-  if (options.arm != Consistency::as_printed) cut = cut_hull(hull.grid, regions, views, options);
-  Input in{hull, regions, options, {options.nodes, {}}, cut ? &*cut : nullptr};
+  Cells cells;
+  std::vector<Cut> cuts;
+  if (options.arm != Consistency::as_printed) {
+    cells = partition(hull.grid, regions);
+    cuts = cut_hull(hull.grid, cells, regions, drawings, views, options);
+  }
+  Input in{hull, options, {options.nodes, {}}, cells, cuts};
   const auto start = std::chrono::steady_clock::now();
   if (options.seconds)
     in.limit.until = start + std::chrono::duration_cast<std::chrono::steady_clock::duration>(

@@ -25,9 +25,10 @@ inline std::span<const char* const> names(Consistency) {
 struct ConsistencyOptions {
   Consistency arm = Consistency::solver;
   std::optional<int> grid = 128;
+  bool vote = true;
   RegionOptions regions = {};
   CellWeights weights = {};
-  int nodes = 80000;
+  int nodes = 60000;
   std::optional<double> seconds = {};
   int alternatives = 2000;
   bool self_check = true;
@@ -37,6 +38,7 @@ void visit_fields(ConsistencyOptions& o, Visitor&& field) {
   field("arm", o.arm, "how concave parts are carved");
   field("grid", o.grid, 8, kLargestGrid,
         "voxels along the longest side of the grid on which cells are decided; auto: those of the carving");
+  field("vote", o.vote, "decide on three quarters and nine eighths of that grid too, drop what two of the three drop");
   visit_fields(o.regions, field);
   visit_fields(o.weights, field);
   field("nodes", o.nodes, 0, 100000000, "most choices the solver looks at before it takes the best so far");

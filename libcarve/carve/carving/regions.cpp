@@ -6,6 +6,7 @@
 #include "carve/carving/colour_segments.h"
 #include "carve/carving/nearest.h"
 #include "carve/carving/region_strokes.h"
+#include "carve/carving/stroke_ends.h"
 #include "carve/grid/shadow.h"
 
 namespace carve {
@@ -32,40 +33,49 @@ Mask grown(const Mask& mask) {
   return out;
 }
 
-class RegionFinder {
+}  // namespace
+
+class CutDrawing::Work {
  public:
-  RegionFinder(const AlignedView& view, const VoxelGrid& hull, const RegionOptions& options)
+  Work(const AlignedView& view, double longest, const RegionOptions& options)
       : view_(view),
-        hull_(hull),
-        voxel_(std::min(std::abs(view.column_per_unit), std::abs(view.row_per_unit)) * hull.spacing()),
+        scale_(std::min(std::abs(view.column_per_unit), std::abs(view.row_per_unit))),
+        voxel_(scale_ * longest / 128),
         window_(window_of(view.drawing)),
         background_(where(window_.label, Label::background)),
         edge_(cleaned(options)),
         surface_(where(window_.label, Label::surface)),
         stroke_(stroke_width(edge_)),
         nearest_surface_(surface_),
-        segment_(component_),
+        part_(parts(options)),
+        segment_(part_),
         inner_(inner_strokes()),
         nearest_inner_(inner_) {
     if (options.colours) split_by_colour();
   }
 
-  RegionMap map() {
+  RegionMap on(const VoxelGrid& hull) const {
     RegionMap out;
     out.view = view_.view;
-    const Mask seen = shadow(hull_, view_.view);
-    sample(seen);
-    name_regions(out, seen);
-    find_colours(out);
-    find_borders(out);
+    const Mask seen = shadow(hull, view_.view);
+    const Sample at = sample(seen, hull);
+    const std::vector<int> name = name_regions(out, at);
+    find_colours(out, name);
+    find_borders(out, at, scale_ * hull.spacing());
     return out;
   }
 
  private:
+  /// The window's pixel at each grid pixel's centre, and the surface pixel that stands for it; -1: none.
+  struct Sample {
+    Raster<int> pixel, surface;
+  };
+
   /// The strokes, the false ones dropped from the window.
   Mask cleaned(const RegionOptions& options) {
     constexpr double kInARow = 4;  // gaps as long as the outline's that may follow each other
     const double broken = std::min(64.0, kInARow * outline_gap(window_.label)), gap = std::max(options.gap, broken);
+    gap_ = gap;
     drop_false_strokes(window_, background_, stroke_width(where(window_.label, Label::edge)), gap, 4 * voxel_);
     component_ = stroke_components(window_.label, gap);
     if (broken > 0) fill_specks(window_.label, component_, 4 * voxel_ * voxel_);
@@ -80,20 +90,25 @@ class RegionFinder {
     return inner;
   }
 
-  /// Within a component the anti-aliased rim takes the nearest colour segment; across components it must not.
+  Raster<int> parts(const RegionOptions& options) const {
+    const double longest = options.ends / 100 * std::max(edge_.width, edge_.height);
+    return longest >= 1 ? cut_at_ends(window_.label, component_, stroke_, gap_, longest) : component_;
+  }
+
+  /// Within a part the anti-aliased rim takes the nearest colour segment; across parts it must not.
   void split_by_colour() {
     Mask clean(edge_.width, edge_.height);
     Mask other(edge_.width, edge_.height);
     for (std::size_t i = 0; i < other.pixels.size(); ++i) other.pixels[i] = !surface_.pixels[i];
     const Mask rim = grown(other);
     for (std::size_t i = 0; i < clean.pixels.size(); ++i) clean.pixels[i] = surface_.pixels[i] && !rim.pixels[i];
-    const Raster<int> colours = colour_segments(component_, window_.colour, clean, std::max(1.0, voxel_ * voxel_));
+    const Raster<int> colours = colour_segments(part_, window_.colour, clean, std::max(1.0, voxel_ * voxel_));
     const NearestSet nearest(clean);
     for (int y = 0; y < edge_.height; ++y)
       for (int x = 0; x < edge_.width; ++x) {
         if (!surface_(x, y)) continue;
         const int colour = clean(x, y) ? y * edge_.width + x : nearest(x, y);
-        if (colour >= 0 && component_.pixels[colour] == component_(x, y)) segment_(x, y) = colours.pixels[colour];
+        if (colour >= 0 && part_.pixels[colour] == part_(x, y)) segment_(x, y) = colours.pixels[colour];
       }
   }
 
@@ -102,13 +117,12 @@ class RegionFinder {
     return surface_.pixels[pixel] ? pixel : nearest_surface_(pixel % edge_.width, pixel / edge_.width);
   }
 
-  /// The window's pixel at each grid pixel's centre, and the surface pixel that stands for it.
-  void sample(const Mask& seen) {
-    pixel_ = at_ = Raster<int>(seen.width, seen.height, -1);
+  Sample sample(const Mask& seen, const VoxelGrid& hull) const {
+    Sample out{Raster<int>(seen.width, seen.height, -1), Raster<int>(seen.width, seen.height, -1)};
     const Frame f = frame(view_.view);
     const auto coordinate = [&](SignedAxis axis, int i, int n) {
       const int index = axis.sign > 0 ? i : n - 1 - i;
-      return hull_.low()[axis.axis] + (index + 0.5) * hull_.spacing();
+      return hull.low()[axis.axis] + (index + 0.5) * hull.spacing();
     };
     for (int j = 0; j < seen.height; ++j)
       for (int i = 0; i < seen.width; ++i) {
@@ -116,24 +130,27 @@ class RegionFinder {
         const double a = coordinate(f.right, i, seen.width), b = coordinate(f.up, seen.height - 1 - j, seen.height);
         const int x = std::clamp(static_cast<int>(std::floor(view_.column(a))) - window_.x0, 0, edge_.width - 1);
         const int y = std::clamp(static_cast<int>(std::floor(view_.row(b))) - window_.y0, 0, edge_.height - 1);
-        pixel_(i, j) = y * edge_.width + x;
-        at_(i, j) = labelled(pixel_(i, j));
+        out.pixel(i, j) = y * edge_.width + x;
+        out.surface(i, j) = labelled(out.pixel(i, j));
       }
+    return out;
   }
 
-  void name_regions(RegionMap& out, const Mask& seen) {
-    name_.assign(segment_.pixels.size() + 1, -1);  // one more: of a drawing without surface
-    out.region = Raster<int>(seen.width, seen.height, -1);
-    for (std::size_t k = 0; k < at_.pixels.size(); ++k) {
-      if (pixel_.pixels[k] < 0) continue;
-      const int at = at_.pixels[k];
-      int& region = at < 0 ? name_.back() : name_[segment_.pixels[at]];
+  /// \return each segment's region
+  std::vector<int> name_regions(RegionMap& out, const Sample& sample) const {
+    std::vector<int> name(segment_.pixels.size() + 1, -1);  // one more: of a drawing without surface
+    out.region = Raster<int>(sample.pixel.width, sample.pixel.height, -1);
+    for (std::size_t k = 0; k < sample.pixel.pixels.size(); ++k) {
+      if (sample.pixel.pixels[k] < 0) continue;
+      const int at = sample.surface.pixels[k];
+      int& region = at < 0 ? name.back() : name[segment_.pixels[at]];
       if (region < 0) region = out.count++;
       out.region.pixels[k] = region;
     }
+    return name;
   }
 
-  void find_colours(RegionMap& out) const {
+  void find_colours(RegionMap& out, const std::vector<int>& name) const {
     out.colour.assign(out.count, Vec3::Zero());
     std::vector<double> weight(out.count, 0);
     for (std::size_t i = 0; i < segment_.pixels.size();) {
@@ -144,7 +161,7 @@ class RegionFinder {
         const Rgba& c = window_.colour.pixels[i];
         red += c.r, green += c.g, blue += c.b;
       }
-      const int region = segment < 0 ? -1 : name_[segment];
+      const int region = segment < 0 ? -1 : name[segment];
       if (region < 0) continue;
       out.colour[region] += Vec3(red, green, blue);
       weight[region] += i - begin;
@@ -168,23 +185,25 @@ class RegionFinder {
     return false;
   }
 
-  void find_borders(RegionMap& out) const {
+  /// \param voxel  pixels
+  void find_borders(RegionMap& out, const Sample& sample, double voxel) const {
     constexpr double kNear = 1.5;  // voxels
-    const int w = edge_.width, width = pixel_.width, height = pixel_.height;
+    const int w = edge_.width, width = sample.pixel.width, height = sample.pixel.height;
     Mask near(width, height);
-    for (std::size_t k = 0; k < pixel_.pixels.size(); ++k)
-      if (const int p = pixel_.pixels[k]; p >= 0)
-        near.pixels[k] = nearest_inner_.distance(p % w, p / w, kNear * voxel_) < kNear * voxel_;
+    for (std::size_t k = 0; k < sample.pixel.pixels.size(); ++k)
+      if (const int p = sample.pixel.pixels[k]; p >= 0)
+        near.pixels[k] = nearest_inner_.distance(p % w, p / w, kNear * voxel) < kNear * voxel;
     const auto border = [&](int i, int j, int di, int dj) {
       if (i + di >= width || j + dj >= height) return Border::near;
-      const int p = pixel_(i, j), q = pixel_(i + di, j + dj);
+      const int p = sample.pixel(i, j), q = sample.pixel(i + di, j + dj);
       if (p < 0 || q < 0) return Border::near;
-      const int a = at_(i, j), b = at_(i + di, j + dj);
+      const int a = sample.surface(i, j), b = sample.surface(i + di, j + dj);
       const bool one = (a < 0 ? -1 : component_.pixels[a]) == (b < 0 ? -1 : component_.pixels[b]);
       if (!one) return crossed(p, q) ? Border::stroke : Border::near;
       if (crossed(p, q)) return Border::open;
       if (near(i, j) || near(i + di, j + dj)) return Border::near;
-      return out.region(i, j) != out.region(i + di, j + dj) ? Border::colour : Border::none;
+      if (out.region(i, j) == out.region(i + di, j + dj)) return Border::none;
+      return a >= 0 && b >= 0 && part_.pixels[a] == part_.pixels[b] ? Border::colour : Border::none;
     };
     out.right = out.below = Raster<Border>(width, height, Border::near);
     for (int j = 0; j < height; ++j)
@@ -195,25 +214,28 @@ class RegionFinder {
   }
 
   const AlignedView& view_;
-  const VoxelGrid& hull_;
-  double voxel_;  // pixels
+  double scale_;  // pixels per unit
+  double voxel_;  // of a grid of 128, in pixels: how fine the drawing is cut does not depend on the grid
   RegionWindow window_;
   NearestSet background_;
+  double gap_ = 0;         // in strokes, in pixels
   Raster<int> component_;  // of surface pixels, between strokes
   Mask edge_, surface_;
   double stroke_;  // width in pixels
   NearestSet nearest_surface_;
+  Raster<int> part_;     // of surface pixels: a component, or what strokes that end in it cut it into
   Raster<int> segment_;  // of surface pixels, of one colour
   Mask inner_;           // strokes
   NearestSet nearest_inner_;
-  Raster<int> pixel_, at_;  // of grid pixels
-  std::vector<int> name_;   // segment -> region
 };
 
-}  // namespace
+CutDrawing::CutDrawing(const AlignedView& view, double longest, const RegionOptions& options)
+    : work_(std::make_shared<const Work>(view, longest, options)) {}
+
+RegionMap CutDrawing::on(const VoxelGrid& hull) const { return work_->on(hull); }
 
 RegionMap find_regions(const AlignedView& view, const VoxelGrid& hull, const RegionOptions& options) {
-  return RegionFinder(view, hull, options).map();
+  return CutDrawing(view, hull.size().maxCoeff() * hull.spacing(), options).on(hull);
 }
 
 }  // namespace carve

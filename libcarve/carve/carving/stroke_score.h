@@ -12,7 +12,7 @@ struct JumpRamp {
   double low, high;
   double operator()(double share) const { return share <= low ? 0 : share >= high ? 1 : (share - low) / (high - low); }
 };
-inline constexpr JumpRamp kStrokeJump{0.008, 0.02};      // enough to explain a stroke
+inline constexpr JumpRamp kStrokeJump{0.004, 0.02};      // enough to explain a stroke
 inline constexpr JumpRamp kUnexplainedJump{0.02, 0.06};  // more than a steep surface has between two grid pixels
 
 /// How well a solid explains the inner strokes and the silhouettes of the drawings it was carved from; no ground truth
