@@ -64,7 +64,7 @@ std::vector<Cut> cut_hull(const VoxelGrid& hull, const Cells& own, std::span<con
       if (!other && all[k] != resolution && k > 0) continue;
       std::vector<RegionMap> cut =
           other ? regions_on(drawings, *other) : std::vector<RegionMap>(regions.begin(), regions.end());
-      Cells cells = partition(other ? *other : hull, cut);
+      Cells cells = other ? partition(*other, cut) : own;
       cells.rays = trace(cells, cut);
       CellProblem problem(cells, cut, options.weights);
       std::vector<int> counterpart = counterparts(own, hull, cells, other ? *other : hull);
