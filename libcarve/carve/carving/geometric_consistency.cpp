@@ -97,9 +97,14 @@ std::vector<OpenCell> boxes_of(const Cells& cells, std::span<const std::uint8_t>
   return out;
 }
 
-ConsistencyResult as_printed(const Input& in) {
-  return {.grid = carve_as_printed(in.hull), .ran = Consistency::as_printed};
-}
+/// What an arm left of the hull, and the choice it stands for.
+struct Carved {
+  ConsistencyResult result;
+  std::optional<CellProblem> decision = {};  // that of the first grid
+  std::vector<std::uint8_t> keep = {};       // per cell of the hull's grid
+};
+
+Carved as_printed(const Input& in) { return {{.grid = carve_as_printed(in.hull), .ran = Consistency::as_printed}}; }
 
 /// What was decided on one grid.
 struct Choice {
@@ -111,7 +116,7 @@ struct Choice {
 
 /// Decides the cells on each grid and drops what most of the decisions drop.
 template <class Decide>
-ConsistencyResult by_cells(const Input& in, Decide&& decide) {
+Carved by_cells(const Input& in, Decide&& decide) {
   const int count = static_cast<int>(in.cuts.size());
   std::vector<std::optional<Choice>> choices(count);
   parallel_ranges(0, count, 1, [&](int first, int last) {
@@ -126,22 +131,26 @@ ConsistencyResult by_cells(const Input& in, Decide&& decide) {
     for (int c = 0; c < in.cells.count; ++c)
       if (const int other = in.cuts[k].counterpart[c]; other >= 0) dropped[c] += !choices[k]->problem.keep()[other];
   }
-  std::vector<std::uint8_t> keep(in.cells.count), open(in.cells.count, 0);
+  std::vector<std::uint8_t> keep(in.cells.count);
   for (int c = 0; c < in.cells.count; ++c) keep[c] = 2 * dropped[c] <= count;
   out.grid = assemble(in.hull.grid, in.cells, keep);
+  return {std::move(out), std::move(choices[0]->problem), std::move(keep)};
+}
 
-  const Alternatives others = find_alternatives(choices[0]->problem, in.options.alternatives);
-  out.solids = others.solids;
-  out.all_solids = others.all;
-  std::vector<std::uint8_t> differs(choices[0]->problem.cells(), 0);
+/// Counts the solids that explain the drawings as well as the decision does.
+void find_others(const Input& in, Carved& carved) {
+  if (!carved.decision) return;
+  const Alternatives others = find_alternatives(*carved.decision, in.options.alternatives);
+  carved.result.solids = others.solids;
+  carved.result.all_solids = others.all;
+  std::vector<std::uint8_t> differs(carved.decision->cells(), 0), open(in.cells.count, 0);
   for (const int c : others.cells) differs[c] = 1;
   for (int c = 0; c < in.cells.count; ++c)
     if (const int other = in.cuts[0].counterpart[c]; other >= 0) open[c] = differs[other];
-  out.open_cells = boxes_of(in.cells, open, keep);
-  return out;
+  carved.result.open_cells = boxes_of(in.cells, open, carved.keep);
 }
 
-ConsistencyResult two_level(const Input& in) {
+Carved two_level(const Input& in) {
   return by_cells(in, [](const Cut& cut) {
     Choice choice{cut.hull, Consistency::two_level, 0};
     choice.nodes = drop_in_one_pass(choice.problem);
@@ -151,7 +160,7 @@ ConsistencyResult two_level(const Input& in) {
 }
 
 /// The search, or one pass where that ends lower: a search that was cut short may.
-ConsistencyResult solver(const Input& in) {
+Carved solver(const Input& in) {
   return by_cells(in, [&](const Cut& cut) {
     Choice choice{cut.hull, Consistency::solver, 0};
     const SearchEnd end = search_cells(choice.problem, cut.cells, in.limit);
@@ -167,7 +176,7 @@ ConsistencyResult solver(const Input& in) {
   });
 }
 
-using Arm = ConsistencyResult (*)(const Input&);
+using Arm = Carved (*)(const Input&);
 constexpr Arm kArms[] = {nullptr, as_printed, two_level,
                          solver};  // in the order of Consistency; none has nothing to do
 
@@ -206,36 +215,38 @@ ConsistencyResult apply_consistency(const Carving& hull, const ViewSet& views, c
     in.limit.until = start + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                                  std::chrono::duration<double>(*options.seconds));
   const auto checked = [&](Consistency arm) {
-    ConsistencyResult carved = kArms[static_cast<int>(arm)](in);
-    if (options.self_check) carved.grid = cover_silhouettes(std::move(carved.grid), hull.grid, names);
-    carved.score = score_strokes(carved.grid, regions);
+    Carved carved = kArms[static_cast<int>(arm)](in);
+    VoxelGrid& grid = carved.result.grid;
+    if (options.self_check) grid = cover_silhouettes(std::move(grid), hull.grid, names);
+    carved.result.score = score_strokes(grid, regions);
     return carved;
   };
-  const auto fits = [&](const ConsistencyResult& carved) {
-    return !options.self_check || carved.score.explains_more_than(result.hull_score);
+  const auto fits = [&](const Carved& carved) {
+    return !options.self_check || carved.result.score.explains_more_than(result.hull_score);
   };
-  ConsistencyResult carved = checked(options.arm);
-  if (!fits(carved) && carved.ran == Consistency::solver) {
-    const ConsistencyResult rejected = std::move(carved);
+  Carved carved = checked(options.arm);
+  if (!fits(carved) && carved.result.ran == Consistency::solver) {
+    const ConsistencyResult rejected = std::move(carved.result);
     carved = checked(Consistency::two_level);
-    carved.nodes += rejected.nodes;
-    carved.in_time = rejected.in_time;
+    carved.result.nodes += rejected.nodes;
+    carved.result.in_time = rejected.in_time;
   }
+  ConsistencyResult& out = carved.result;
   if (!fits(carved)) {
-    carved.ran = Consistency::none;
-    carved.score = result.hull_score;
-    if (carved.grid != hull.grid) {  // the record is that of another solid
-      carved.grid = hull.grid;
-      carved.solids = 1;
-      carved.all_solids = false;
-      carved.open_cells.clear();
+    out.ran = Consistency::none;
+    out.score = result.hull_score;
+    if (out.grid != hull.grid) {  // the decision is that of another solid
+      out.grid = hull.grid;
+      out.all_solids = false;
+      carved.decision.reset();
     }
   }
-  carved.regions = result.regions;
-  carved.hull_score = result.hull_score;
-  carved.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  find_others(in, carved);
+  out.regions = result.regions;
+  out.hull_score = result.hull_score;
+  out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   monitor.at("consistency", 0.9);
-  return carved;
+  return std::move(carved.result);
 }
 
 }  // namespace carve

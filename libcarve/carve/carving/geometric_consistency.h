@@ -28,7 +28,7 @@ struct ConsistencyOptions {
   bool vote = true;
   RegionOptions regions = {};
   CellWeights weights = {};
-  int nodes = 40000;
+  int nodes = 60000;
   std::optional<double> seconds = {};
   int alternatives = 2000;
   bool self_check = true;
