@@ -205,8 +205,8 @@ std::vector<int> counterparts(const Cells& own, const VoxelGrid& own_grid, const
     const double at = own_grid.low()[axis] + (i + 0.5) * own_grid.spacing() - other_grid.low()[axis];
     return std::clamp(static_cast<int>(std::floor(at / other_grid.spacing())), 0, size[axis] - 1);
   };
-  std::vector<int> column;
-  for (int x = 0; x < own.size.x(); ++x) column.push_back(index(0, x));
+  std::vector<int> column(own.size.x());
+  for (int x = 0; x < own.size.x(); ++x) column[x] = index(0, x);
 
   std::vector<std::map<int, std::int64_t>> shared(own.count);
   for (const CellRun& run : own.runs) {

@@ -193,6 +193,7 @@ ConsistencyResult apply_consistency(const Carving& hull, const ViewSet& views, c
     for (int v = first; v < last; ++v) cut[v].emplace(views.views[v], longest, options.regions);
   });
   std::vector<CutDrawing> drawings;
+  drawings.reserve(cut.size());
   for (std::optional<CutDrawing>& drawing : cut) drawings.push_back(std::move(*drawing));
   const std::vector<RegionMap> regions = regions_on(drawings, hull.grid);
   std::vector<View> names;

@@ -103,6 +103,7 @@ std::vector<StrokeEnd> stroke_ends(const Raster<Label>& label, double width) {
     if (last[name] < 0 || along(i) > along(last[name])) last[name] = i;
   }
   std::vector<StrokeEnd> ends;
+  ends.reserve(names.size());
   for (const int name : names) ends.push_back({last[name] % w, last[name] / w, onward[name].normalized()});
   return ends;
 }
