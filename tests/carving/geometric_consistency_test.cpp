@@ -218,6 +218,21 @@ TEST_P(ConsistencyTest, WhatIsDroppedDoesNotDependOnTheGrid) {
   EXPECT_NEAR(dropped(96), decided, 0.03);
 }
 
+TEST_P(ConsistencyTest, WhatTwoOfThreeGridsDropIsDropped) {
+  const ViewSet views = views_of(random_pockets(GetParam()), kThreeViews);
+  const Carving hull = carve_silhouettes(views, {.grid = 40});
+  const auto carved = [&](int grid, bool vote) {
+    return apply_consistency(hull, views, {.grid = grid, .vote = vote, .self_check = false}).grid;
+  };
+  const VoxelGrid one = carved(32, false), two = carved(24, false), three = carved(36, false);
+  VoxelGrid most = hull.grid;
+  for (std::size_t i = 0; i < most.words().size(); ++i) {
+    const std::uint64_t a = one.words()[i], b = two.words()[i], c = three.words()[i];
+    most.words()[i] = (a & b) | (a & c) | (b & c);
+  }
+  EXPECT_EQ(carved(32, true), most);
+}
+
 TEST_P(ConsistencyTest, ACellIsPartOfTheOneItSharesMostSpaceWithOnAnotherGrid) {
   const ViewSet views = views_of(random_pockets(GetParam()), kThreeViews);
   const auto cut = [&](const VoxelGrid& hull) {
