@@ -76,6 +76,7 @@ class CutDrawing::Work {
     constexpr double kInARow = 4;  // gaps as long as the outline's that may follow each other
     const double broken = std::min(64.0, kInARow * outline_gap(window_.label)), gap = std::max(options.gap, broken);
     gap_ = gap;
+    broken_ = broken > 0;
     drop_false_strokes(window_, background_, stroke_width(where(window_.label, Label::edge)), gap, 4 * voxel_);
     component_ = stroke_components(window_.label, gap);
     if (broken > 0) fill_specks(window_.label, component_, 4 * voxel_ * voxel_);
@@ -90,7 +91,9 @@ class CutDrawing::Work {
     return inner;
   }
 
+  /// In a drawing whose outline has gaps, an end is most likely one too.
   Raster<int> parts(const RegionOptions& options) const {
+    if (broken_) return component_;
     const double longest = options.ends / 100 * std::max(edge_.width, edge_.height);
     return longest >= 1 ? cut_at_ends(window_.label, component_, stroke_, gap_, longest) : component_;
   }
@@ -219,6 +222,7 @@ class CutDrawing::Work {
   RegionWindow window_;
   NearestSet background_;
   double gap_ = 0;         // in strokes, in pixels
+  bool broken_ = false;    // the outline has gaps
   Raster<int> component_;  // of surface pixels, between strokes
   Mask edge_, surface_;
   double stroke_;  // width in pixels
