@@ -18,8 +18,10 @@ namespace {
 struct Cut {
   std::vector<RegionMap> regions;
   Cells cells;
-  CellProblem hull;              // all of them kept
+  CellProblem hull;  // all of them kept
+  VoxelGrid grid;
   std::vector<int> counterpart;  // which of them a cell of the hull's own grid is part of; -1: none
+  std::vector<int> first;        // which cell of the first grid each of them is part of; none on that grid itself
 };
 
 struct Input {
@@ -68,12 +70,15 @@ std::vector<Cut> cut_hull(const VoxelGrid& hull, const Cells& own, std::span<con
       cells.rays = trace(cells, cut);
       CellProblem problem(cells, cut, options.weights);
       std::vector<int> counterpart = counterparts(own, hull, cells, other ? *other : hull);
-      cuts[k] = Cut{std::move(cut), std::move(cells), std::move(problem), std::move(counterpart)};
+      cuts[k] =
+          Cut{std::move(cut), std::move(cells), std::move(problem), other ? *other : hull, std::move(counterpart), {}};
     }
   });
   std::vector<Cut> out;
   for (std::optional<Cut>& cut : cuts)
     if (cut) out.push_back(std::move(*cut));
+  for (std::size_t k = 1; k < out.size(); ++k)
+    out[k].first = counterparts(out[k].cells, out[k].grid, out[0].cells, out[0].grid);
   return out;
 }
 
@@ -114,13 +119,25 @@ struct Choice {
   bool in_time = true;
 };
 
-/// Decides the cells on each grid and drops what most of the decisions drop.
+/// A problem where the other grids begin: what the first one dropped is dropped.
+CellProblem begun(const Cut& cut, const Choice* first) {
+  CellProblem problem = cut.hull;
+  std::vector<int> drop;
+  if (first)
+    for (int c = 0; c < problem.cells(); ++c)
+      if (cut.first[c] >= 0 && !first->problem.keep()[cut.first[c]]) drop.push_back(c);
+  problem.flip(drop);
+  return problem;
+}
+
+/// Decides the cells on each grid, the first one first, and drops what most of the decisions drop.
 template <class Decide>
 Carved by_cells(const Input& in, Decide&& decide) {
   const int count = static_cast<int>(in.cuts.size());
   std::vector<std::optional<Choice>> choices(count);
-  parallel_ranges(0, count, 1, [&](int first, int last) {
-    for (int k = first; k < last; ++k) choices[k] = decide(in.cuts[k]);
+  choices[0] = decide(in.cuts[0], nullptr);
+  parallel_ranges(1, count, 1, [&](int first, int last) {
+    for (int k = first; k < last; ++k) choices[k] = decide(in.cuts[k], &*choices[0]);
   });
 
   ConsistencyResult out{.ran = choices[0]->ran, .cells = choices[0]->problem.cells()};
@@ -151,7 +168,7 @@ void find_others(const Input& in, Carved& carved) {
 }
 
 Carved two_level(const Input& in) {
-  return by_cells(in, [](const Cut& cut) {
+  return by_cells(in, [](const Cut& cut, const Choice*) {
     Choice choice{cut.hull, Consistency::two_level, 0};
     choice.nodes = drop_in_one_pass(choice.problem);
     restore_unexplained(choice.problem);
@@ -161,9 +178,12 @@ Carved two_level(const Input& in) {
 
 /// The search, or one pass where that ends lower: a search that was cut short may.
 Carved solver(const Input& in) {
-  return by_cells(in, [&](const Cut& cut) {
-    Choice choice{cut.hull, Consistency::solver, 0};
-    const SearchEnd end = search_cells(choice.problem, cut.cells, in.limit);
+  return by_cells(in, [&](const Cut& cut, const Choice* first) {
+    constexpr int kShorter = 12;  // a search that begins where another ended
+    Choice choice{begun(cut, first), Consistency::solver, 0};
+    SearchLimit limit = in.limit;
+    if (first) limit.nodes /= kShorter;
+    const SearchEnd end = search_cells(choice.problem, cut.cells, limit);
     CellProblem other = cut.hull;
     choice.nodes = end.nodes + drop_in_one_pass(other);
     choice.in_time = end.in_time;

@@ -28,7 +28,7 @@ struct ConsistencyOptions {
   bool vote = true;
   RegionOptions regions = {};
   CellWeights weights = {};
-  int nodes = 60000;
+  int nodes = 150000;
   std::optional<double> seconds = {};
   int alternatives = 2000;
   bool self_check = true;
