@@ -19,18 +19,16 @@ struct SequenceHash {
   }
 };
 
-double ramp(double x, double low, double high) { return std::clamp((x - low) / (high - low), 0.0, 1.0); }
-
 /// What a pixel costs in which two views show a cell in colours that differ for certain.
 std::vector<std::array<std::int64_t, 15>> clashes(const Cells& cells, std::span<const RegionMap> views, double weight) {
-  constexpr double kSame = 30, kOther = 90;  // largest difference of a channel, of 255
+  constexpr JumpRamp kOther{30, 90};  // largest difference of a channel, of 255
   std::vector<std::array<std::int64_t, 15>> out(cells.count);
   for (int c = 0; c < cells.count; ++c) {
     out[c].fill(0);
     for (std::size_t v = 1, pair = 0; v < views.size(); ++v)
       for (std::size_t w = 0; w < v; ++w, ++pair) {
         const Vec3 difference = views[v].colour[cells.regions[c][v]] - views[w].colour[cells.regions[c][w]];
-        out[c][pair] = std::llround(weight * ramp(difference.cwiseAbs().maxCoeff(), kSame, kOther));
+        out[c][pair] = std::llround(weight * kOther(difference.cwiseAbs().maxCoeff()));
       }
   }
   return out;

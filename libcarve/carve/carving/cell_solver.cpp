@@ -60,7 +60,7 @@ class Search {
     descend();
     anneal();
     descend();
-    return {spent(), !late_};
+    return {nodes_, !late_};
   }
 
  private:
@@ -69,7 +69,7 @@ class Search {
     if (until_ && !late_ && ++asked_ % 64 == 0) late_ = std::chrono::steady_clock::now() >= *until_;
     return late_ || spent() >= limit_;
   }
-  /// Choices looked at. One that many rays see counts for several, so that the time does not depend on the drawing.
+  /// Of the limit. A choice that many rays see counts for several, so that the time depends less on the drawing.
   std::int64_t spent() const {
     constexpr int kLooks = 32;
     return nodes_ + (problem_.looks() - looks_before_) / kLooks;
