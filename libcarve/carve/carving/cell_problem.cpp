@@ -11,14 +11,6 @@
 namespace carve {
 namespace {
 
-struct SequenceHash {
-  std::size_t operator()(const std::vector<int>& s) const {
-    std::uint64_t h = 1469598103934665603ULL;
-    for (const int v : s) h = (h ^ static_cast<std::uint64_t>(v)) * 1099511628211ULL;
-    return h;
-  }
-};
-
 /// What a pixel costs in which two views show a cell in colours that differ for certain.
 std::vector<std::array<std::int64_t, 15>> clashes(const Cells& cells, std::span<const RegionMap> views, double weight) {
   constexpr JumpRamp kOther{30, 90};  // largest difference of a channel, of 255
@@ -75,80 +67,72 @@ std::array<std::vector<CellProblem::Pay>, 5> CellProblem::jump_costs(int resolut
 }
 
 CellProblem::CellProblem(const Cells& cells, std::span<const RegionMap> views, const CellWeights& weights)
-    : keep_(cells.count, 1), classes_of_(cells.count), contacts_(cells.count) {
+    : keep_(cells.count, 1), volume_(cells.volume), sight_(cells.count) {
   const double side = kUnit * 128 / cells.size.maxCoeff(), face = side * side / kUnit, voxel = face * side / kUnit;
-  sight_.resize(cells.count);
   buried_ = voxel * weights.buried;
-  volume_ = cells.volume;
   auto costs = std::make_shared<Costs>();
   costs->jumps = jump_costs(cells.size.maxCoeff(), side, weights);
-  std::vector<std::vector<PixelPair>> pairs;  // per group
+  std::vector<std::pair<int, PixelPair>> pairs;  // by group
+  std::vector<std::pair<int, int>> groups_of;    // by class
   for (int v = 0; v < static_cast<int>(views.size()); ++v) {
     const RegionMap& view = views[v];
     const Rays& rays = cells.rays[v];
-    std::unordered_map<std::vector<int>, int, SequenceHash> class_of;
-    std::vector<int> at(static_cast<std::size_t>(rays.width) * rays.height, -1);
-    std::vector<int> sequence;
-    for (int j = 0; j < rays.height; ++j)
-      for (int i = 0; i < rays.width; ++i) {
-        const auto ray = rays(i, j);
-        if (ray.empty()) continue;
-        sequence.clear();
-        for (const RayEntry& e : ray) sequence.push_back(e.cell);
-        const auto [found, fresh] = class_of.try_emplace(sequence, static_cast<int>(classes_.size()));
-        if (fresh) {
-          classes_.push_back({static_cast<int>(order_.size()), static_cast<int>(ray.size()), 0, v, 0, {}});
-          for (const RayEntry& e : ray) {
-            order_.push_back(e.cell);
-            classes_of_[e.cell].push_back(found->second);
-          }
-        }
-        ++classes_[found->second].pixels;
-        for (const RayEntry& e : ray) ++sight_[e.cell][v].pixels;
-        classes_[found->second].empty += std::llround(face * weights.silhouette);
-        at[static_cast<std::size_t>(j) * rays.width + i] = found->second;
-      }
+    const std::vector<int> at = add_classes(rays, v, std::llround(face * weights.silhouette));
     // The depths along each pixel's ray, and -1 where it meets nothing any more.
-    std::vector<int> depths_at(at.size(), -1);
-    for (int j = 0; j < rays.height; ++j)
-      for (int i = 0; i < rays.width; ++i) {
-        depths_at[static_cast<std::size_t>(j) * rays.width + i] = static_cast<int>(costs->depths.size());
-        for (const RayEntry& e : rays(i, j)) costs->depths.push_back(static_cast<std::int16_t>(e.depth));
-        costs->depths.push_back(-1);
-      }
+    const std::size_t depths = costs->depths.size();
+    for (std::size_t p = 0; p < at.size(); ++p) {
+      for (int k = rays.begin[p]; k < rays.begin[p + 1]; ++k)
+        costs->depths.push_back(static_cast<std::int16_t>(rays.entries[k].depth));
+      costs->depths.push_back(-1);
+    }
+    const auto depths_at = [&](std::size_t p) { return static_cast<int>(depths + rays.begin[p] + p); };
     std::unordered_map<std::uint64_t, int> group_of;
-    const auto pair = [&](std::size_t p, std::size_t q, Border border) {
+    int recent[2] = {-1, -1};  // most pixels are in the group of the one before them
+    const auto pair = [&](std::size_t p, std::size_t q, Border border, int& group) {
       const int a = at[p], b = at[q];
       if (border == Border::near || a < 0 || b < 0) return;
-      const auto [found, fresh] =
-          group_of.emplace(static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint32_t>(b), groups_.size());
-      if (fresh) {
-        groups_.push_back({a, b});
-        pairs.emplace_back();
-        classes_[a].groups.push_back(found->second);
-        if (a != b) classes_[b].groups.push_back(found->second);
+      if (group < 0 || groups_[group].a != a || groups_[group].b != b) {
+        const auto [found, fresh] =
+            group_of.emplace(static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint32_t>(b), groups_.size());
+        group = found->second;
+        if (fresh) {
+          groups_.push_back({a, b});
+          groups_of.emplace_back(a, group);
+          if (a != b) groups_of.emplace_back(b, group);
+        }
       }
-      pairs[found->second].push_back({depths_at[p], depths_at[q], border});
+      pairs.push_back({group, {depths_at(p), depths_at(q), border}});
     };
     for (int j = 0; j < rays.height; ++j)
       for (int i = 0; i < rays.width; ++i) {
         const std::size_t p = static_cast<std::size_t>(j) * rays.width + i;
-        if (i + 1 < rays.width) pair(p, p + 1, view.right(i, j));
-        if (j + 1 < rays.height) pair(p, p + rays.width, view.below(i, j));
+        if (i + 1 < rays.width) pair(p, p + 1, view.right(i, j), recent[0]);
+        if (j + 1 < rays.height) pair(p, p + rays.width, view.below(i, j), recent[1]);
       }
   }
+  std::vector<std::pair<int, Member>> members;
+  members.reserve(order_.size());
+  for (int k = 0; k < static_cast<int>(classes_.size()); ++k)
+    for (int n = 0; n < classes_[k].length; ++n) members.push_back({order_[classes_[k].begin + n], {k, n}});
+  members_ = {cells.count, members};
+  groups_of_ = {static_cast<int>(classes_.size()), groups_of};
+
+  std::vector<std::pair<int, Contact>> touching;
   for (const CellContact& c : contacts(cells)) {
     const std::int64_t area = std::llround(face * weights.area * c.faces);
-    contacts_[c.a].push_back({c.b, area});
+    touching.push_back({c.a, {c.b, area}});
     if (c.b >= 0)
-      contacts_[c.b].push_back({c.a, area});
+      touching.push_back({c.b, {c.a, area}});
     else
       energy_ += area;
   }
+  contacts_ = {cells.count, touching};
   for (const std::int64_t v : cells.volume) volume_cost_.push_back(std::llround(voxel * weights.volume * v));
-  for (std::size_t g = 0; g < groups_.size(); ++g) tabulate(groups_[g], pairs[g], *costs);
+  const Lists<PixelPair> pairs_of(static_cast<int>(groups_.size()), pairs);
+  for (std::size_t g = 0; g < groups_.size(); ++g) tabulate(groups_[g], pairs_of[static_cast<int>(g)], *costs);
   costs_ = std::move(costs);
   first_.assign(classes_.size(), 0);  // all is kept
+  was_ = first_;
   for (const Class& c : classes_) set_open(c, 0, 1, 1);
   for (Group& g : groups_) {
     g.value = value_of(g);
@@ -159,6 +143,7 @@ CellProblem::CellProblem(const Cells& cells, std::span<const RegionMap> views, c
   group_mark_.assign(groups_.size(), 0);
   touch_mark_.assign(cells.count, 0);
   clash_ = clashes(cells, views, face * weights.agreement);
+  for (const auto& clash : clash_) clashes_.push_back(std::ranges::any_of(clash, [](auto cost) { return cost != 0; }));
   symmetry_ = voxel * weights.symmetry;
   mirror_ = weights.symmetry > 0 ? mirror_images(cells) : std::vector<int>(cells.count, -1);
   touched_.clear();
@@ -168,9 +153,54 @@ CellProblem::CellProblem(const Cells& cells, std::span<const RegionMap> views, c
   }
 }
 
+/// Finds the classes of a view's rays. \return each pixel's, -1: its ray meets nothing
+std::vector<int> CellProblem::add_classes(const Rays& rays, int view, std::int64_t empty) {
+  const auto cells_of = [&](int p) {
+    return std::span(rays.entries).subspan(rays.begin[p], rays.begin[p + 1] - rays.begin[p]);
+  };
+  const auto alike = [](const RayEntry& a, const RayEntry& b) { return a.cell == b.cell; };
+  const auto equal = [&](int p, int q) { return std::ranges::equal(cells_of(p), cells_of(q), alike); };
+  const auto hash = [&](int p) {
+    std::uint64_t h = 1469598103934665603ULL;
+    for (const RayEntry& e : cells_of(p)) h = (h ^ static_cast<std::uint64_t>(e.cell)) * 1099511628211ULL;
+    return static_cast<std::size_t>(h ^ h >> 32);
+  };
+  std::unordered_map<int, int, decltype(hash), decltype(equal)> class_of(64, hash, equal);  // by its first pixel
+  std::vector<int> at(rays.begin.size() - 1, -1);
+  for (int p = 0; p < static_cast<int>(at.size()); ++p) {
+    const auto ray = cells_of(p);
+    if (ray.empty()) continue;
+    if (p > 0 && equal(p - 1, p)) {
+      at[p] = at[p - 1];
+    } else {
+      const auto [found, fresh] = class_of.try_emplace(p, static_cast<int>(classes_.size()));
+      at[p] = found->second;
+      if (fresh) {
+        classes_.push_back({static_cast<int>(order_.size()), static_cast<int>(ray.size()), view});
+        for (const RayEntry& e : ray) order_.push_back(e.cell);
+      }
+    }
+    ++classes_[at[p]].pixels;
+  }
+  for (auto c = classes_.end() - static_cast<std::ptrdiff_t>(class_of.size()); c != classes_.end(); ++c) {
+    c->empty = empty * c->pixels;
+    for (int k = c->begin; k < c->begin + c->length; ++k) sight_[order_[k]][view].pixels += c->pixels;
+  }
+  return at;
+}
+
 int CellProblem::first_of(const Class& c, int k) const {
   while (k < c.length && !keep_[order_[c.begin + k]]) ++k;
   return k;
+}
+
+void CellProblem::move_first(int ray, int position) {
+  if (class_mark_[ray] != stamp_) {
+    class_mark_[ray] = stamp_;
+    was_[ray] = first_[ray];
+    changed_.push_back(ray);
+  }
+  first_[ray] = position;
 }
 
 /// Few pairs are added up when they are asked for: what is in the cache already is faster than a table that is not.
@@ -229,6 +259,7 @@ std::int64_t CellProblem::own_cost(int cell) const {
       if (s.pixels > 0) seen += static_cast<double>(s.open) / s.pixels;
     return std::llround(buried_ * volume_[cell] * std::max(0.0, 2 - seen));
   }
+  if (!clashes_[cell]) return 0;
   std::int64_t cost = 0;
   for (int v = 1, pair = 0; v < 6; ++v)
     for (int w = 0; w < v; ++w, ++pair)
@@ -239,10 +270,8 @@ std::int64_t CellProblem::own_cost(int cell) const {
 std::int64_t CellProblem::flip(std::span<const int> cells) {
   ++stamp_;
   const std::int64_t before = energy_, misfit_before = misfit();
-  bool added = false;
   for (const int c : cells) {
     keep_[c] ^= 1;
-    added |= keep_[c] != 0;
     energy_ += keep_[c] ? -volume_cost_[c] : volume_cost_[c];
     if (const int m = mirror_[c]; m >= 0) {
       const std::int64_t cost = std::llround(symmetry_ * std::min(volume_[c], volume_[m]));
@@ -255,23 +284,25 @@ std::int64_t CellProblem::flip(std::span<const int> cells) {
   }
   changed_.clear();
   for (const int c : cells)
-    for (const int k : classes_of_[c]) {
-      if (class_mark_[k] == stamp_) continue;
-      class_mark_[k] = stamp_;
-      const Class& ray = classes_[k];
-      const int old = first_[k], first = first_of(ray, added ? 0 : old);
-      if (first == old) continue;
-      if (old == ray.length) uncovered_ -= ray.empty;
-      if (first == ray.length) uncovered_ += ray.empty;
-      // A cell is open to a ray as long as nothing is kept before it: up to and with the first kept one.
-      const int was = std::min(old + 1, ray.length), now = std::min(first + 1, ray.length);
-      if (now > was) set_open(ray, was, now, 1);
-      if (now < was) set_open(ray, now, was, -1);
-      first_[k] = first;
-      changed_.push_back(k);
-    }
+    if (keep_[c])
+      for (const Member& m : members_[c])
+        if (m.position < first_[m.ray]) move_first(m.ray, m.position);
+  for (const int c : cells)
+    if (!keep_[c])
+      for (const Member& m : members_[c])
+        if (m.position == first_[m.ray]) move_first(m.ray, first_of(classes_[m.ray], m.position + 1));
+  for (const int k : changed_) {
+    const Class& ray = classes_[k];
+    const int old = was_[k], first = first_[k];
+    if (old == ray.length) uncovered_ -= ray.empty;
+    if (first == ray.length) uncovered_ += ray.empty;
+    // A cell is open to a ray as long as nothing is kept before it: up to and with the first kept one.
+    const int was = std::min(old + 1, ray.length), now = std::min(first + 1, ray.length);
+    if (now > was) set_open(ray, was, now, 1);
+    if (now < was) set_open(ray, now, was, -1);
+  }
   for (const int k : changed_)
-    for (const int g : classes_[k].groups) {
+    for (const int g : groups_of_[k]) {
       if (group_mark_[g] == stamp_) continue;
       group_mark_[g] = stamp_;
       ++looks_;

@@ -1,7 +1,9 @@
 #pragma once
 #include <array>
 #include <memory>
+#include <numeric>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "carve/carving/cells.h"
@@ -37,6 +39,26 @@ void visit_fields(CellWeights& o, Visitor&& field) {
         "cost of carving one of two cells that the drawings show as mirror images, a voxel");
 }
 
+/// Items by a key 0 .. count-1, those of one key together and in the order in which they came.
+template <class T>
+class Lists {
+ public:
+  Lists() = default;
+  Lists(int count, std::span<const std::pair<int, T>> entries) : begin_(count + 1, 0), items_(entries.size()) {
+    for (const auto& [key, item] : entries) ++begin_[key + 1];
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+    std::vector<int> next(begin_.begin(), begin_.end() - 1);
+    for (const auto& [key, item] : entries) items_[next[key]++] = item;
+  }
+  std::span<const T> operator[](int key) const {
+    return {items_.data() + begin_[key], items_.data() + begin_[key + 1]};
+  }
+
+ private:
+  std::vector<int> begin_{0};
+  std::vector<T> items_;
+};
+
 /// The energy of keeping or dropping each cell, as a sum over few distinct rays.
 ///
 /// Rays that meet the same cells in the same order are one class; what two neighbouring pixels' classes pay for their
@@ -63,12 +85,15 @@ class CellProblem {
   }
 
  private:
+  /// Rays of one view that meet the same cells in the same order.
   struct Class {
-    int begin, length;   // in order_
-    std::int64_t empty;  // cost if none
+    int begin, length;  // in order_
     int view;
-    std::int64_t pixels;
-    std::vector<int> groups;
+    std::int64_t pixels = 0;
+    std::int64_t empty = 0;  // cost if none
+  };
+  struct Member {
+    int ray, position;  // a class, and where on its rays the cell is
   };
   struct Pay {
     std::int32_t stroke = 0, jump = 0;
@@ -106,7 +131,9 @@ class CellProblem {
     std::int64_t pixels = 0, open = 0;  // rays that meet the cell; those that meet nothing before it
   };
   static std::array<std::vector<Pay>, 5> jump_costs(int resolution, double side, const CellWeights& weights);
+  std::vector<int> add_classes(const Rays& rays, int view, std::int64_t empty);
   int first_of(const Class& c, int from) const;
+  void move_first(int ray, int position);
   std::int64_t own_cost(int cell) const;
   void set_open(const Class& c, int from, int to, int sign);
   void tabulate(Group& group, std::span<const PixelPair> pairs, Costs& costs) const;
@@ -116,15 +143,18 @@ class CellProblem {
   std::vector<int> order_;
   std::vector<Class> classes_;
   std::vector<int> first_;  // per class, position of the first kept cell; its length if none
+  std::vector<int> was_;    // the same before a flip
   std::vector<Group> groups_;
-  std::shared_ptr<const Costs> costs_;        // of all copies
-  std::vector<std::vector<int>> classes_of_;  // per cell
-  std::vector<std::vector<Contact>> contacts_;
+  std::shared_ptr<const Costs> costs_;  // of all copies
+  Lists<Member> members_;               // per cell
+  Lists<int> groups_of_;                // per class
+  Lists<Contact> contacts_;             // per cell
   std::vector<std::int64_t> volume_cost_, volume_;
   double buried_ = 0;
   std::vector<std::array<Sight, 6>> sight_;  // per cell and view
   std::vector<std::int64_t> own_now_;
   std::vector<std::array<std::int64_t, 15>> clash_;  // per cell and pair of views: cost of a pixel shown in both
+  std::vector<std::uint8_t> clashes_;                // per cell: one of them is not 0
   std::vector<int> mirror_;
   double symmetry_ = 0;
   std::vector<int> touched_, touch_mark_;

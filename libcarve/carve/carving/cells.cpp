@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <map>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -36,11 +35,45 @@ void overlaps(const std::vector<CellRun>& runs, std::pair<int, int> a, std::pair
   }
 }
 
+/// A view's regions, by the rows of voxels that they lie before.
+class RegionRows {
+ public:
+  RegionRows(const RegionMap& map, const Vec3i& size, int words_per_row) : words_(words_per_row) {
+    const ShadowLayout layout(size, map.view);
+    Vec3i picture = size;
+    picture[layout.frame.toward.axis] = 1;
+    step_ = Vec3i(picture.x() > 1, picture.y() > 1, picture.z() > 1 ? picture.y() : 0);
+    region_ = Raster<int>(picture.x(), picture.y() * picture.z());
+    changes_.assign(static_cast<std::size_t>(region_.height) * words_, 0);
+    for (int row = 0; row < region_.height; ++row)
+      for (int x = 0; x < region_.width; ++x) {
+        const int at[3] = {x, row % picture.y(), row / picture.y()};
+        region_(x, row) =
+            map.region(layout.right_index(at[layout.frame.right.axis]), layout.up_index(at[layout.frame.up.axis]));
+        if (x > 0 && region_(x, row) != region_(x - 1, row))
+          changes_[static_cast<std::size_t>(row) * words_ + x / 64] |= std::uint64_t{1} << x % 64;
+      }
+  }
+  int operator()(int x, int y, int z) const { return region_(step_.x() * x, row(y, z)); }
+  /// Of a row of voxels, the bits where the region is another one than at x - 1.
+  const std::uint64_t* changes(int y, int z) const {
+    return changes_.data() + static_cast<std::size_t>(row(y, z)) * words_;
+  }
+
+ private:
+  int row(int y, int z) const { return step_.y() * y + step_.z() * z; }
+
+  int words_;
+  Vec3i step_;  // in the picture, for a step along each axis
+  Raster<int> region_;
+  std::vector<std::uint64_t> changes_;
+};
+
 class Partition {
  public:
-  Partition(const VoxelGrid& hull, std::span<const RegionMap> views) : hull_(hull), views_(views) {
+  Partition(const VoxelGrid& hull, std::span<const RegionMap> views) : hull_(hull) {
     if (views.size() > 6) throw std::invalid_argument("views must be at most 6, got " + std::to_string(views.size()));
-    for (const RegionMap& view : views) layouts_.emplace_back(hull.size(), view.view);
+    for (const RegionMap& view : views) views_.emplace_back(view, hull.size(), hull.words_per_row());
   }
 
   Cells run() {
@@ -55,33 +88,24 @@ class Partition {
   }
 
  private:
-  Tuple tuple(int x, int y, int z) const {
-    Tuple t;
-    t.fill(-1);
-    const int at[3] = {x, y, z};
-    for (std::size_t v = 0; v < views_.size(); ++v) {
-      const ShadowLayout& l = layouts_[v];
-      t[v] = views_[v].region(l.right_index(at[l.frame.right.axis]), l.up_index(at[l.frame.up.axis]));
-    }
-    return t;
-  }
-
+  /// A run goes on as long as voxels follow each other before the same regions.
   void cut_row(int y, int z) {
     const std::uint64_t* words = hull_.row(y, z);
-    for (int w = 0; w < hull_.words_per_row(); ++w)
-      for (std::uint64_t bits = words[w]; bits; bits &= bits - 1) {
-        const int x = w * 64 + std::countr_zero(bits);
-        const Tuple t = tuple(x, y, z);
-        if (!cells_.runs.empty()) {
-          CellRun& last = cells_.runs.back();
-          if (last.z == z && last.y == y && last.x1 == x && tuples_.back() == t) {
-            ++last.x1;
-            continue;
-          }
-        }
-        cells_.runs.push_back({y, z, x, x + 1, -1});
-        tuples_.push_back(t);
+    std::uint64_t before = 0;  // whether the voxel before the word is inside
+    for (int w = 0; w < hull_.words_per_row(); ++w) {
+      const std::uint64_t inside = words[w];
+      std::uint64_t goes_on = inside & (inside << 1 | before);
+      for (const RegionRows& view : views_) goes_on &= ~view.changes(y, z)[w];
+      before = inside >> 63;
+      if (goes_on & 1) cells_.runs.back().x1 += std::countr_one(goes_on);
+      for (std::uint64_t begins = inside & ~goes_on; begins; begins &= begins - 1) {
+        const int bit = std::countr_zero(begins), x = w * 64 + bit;
+        cells_.runs.push_back({y, z, x, x + 1 + std::countr_one(goes_on >> bit >> 1), -1});
+        Tuple& tuple = tuples_.emplace_back();
+        tuple.fill(-1);
+        for (std::size_t v = 0; v < views_.size(); ++v) tuple[v] = views_[v](x, y, z);
       }
+    }
   }
 
   int find(int i) {
@@ -123,8 +147,7 @@ class Partition {
   }
 
   const VoxelGrid& hull_;
-  std::span<const RegionMap> views_;
-  std::vector<ShadowLayout> layouts_;
+  std::vector<RegionRows> views_;
   Cells cells_;
   std::vector<Tuple> tuples_;
   std::vector<int> parent_;
@@ -149,30 +172,48 @@ Rays trace(const Cells& cells, View view) {
   const std::vector<int> begin = row_offsets(cells.runs, size);
   const int axis = layout.frame.toward.axis;
   const bool from_high = layout.frame.toward.sign > 0;
-  const auto visit_row = [&](int y, int z, int depth) {
+  const auto row = [&](int y, int z) {
     const std::size_t r = static_cast<std::size_t>(z) * size.y() + y;
+    return std::span(cells.runs).subspan(begin[r], begin[r + 1] - begin[r]);
+  };
+  const auto across = [&](int y, int z) {
+    const auto runs = row(y, z);
     const int at[3] = {0, y, z};
-    if (axis == 0) {
-      const int i = layout.right_index(at[layout.frame.right.axis]), j = layout.up_index(at[layout.frame.up.axis]);
-      for (int k = 0; k < begin[r + 1] - begin[r]; ++k) {
-        const CellRun& run = cells.runs[from_high ? begin[r + 1] - 1 - k : begin[r] + k];
-        meet(i, j, run.cell, from_high ? size.x() - run.x1 : run.x0);
-      }
-      return;
+    const int i = layout.right_index(at[layout.frame.right.axis]), j = layout.up_index(at[layout.frame.up.axis]);
+    for (std::size_t k = 0; k < runs.size(); ++k) {
+      const CellRun& run = from_high ? runs[runs.size() - 1 - k] : runs[k];
+      meet(i, j, run.cell, from_high ? size.x() - run.x1 : run.x0);
     }
-    for (int k = begin[r]; k < begin[r + 1]; ++k)
-      for (int x = cells.runs[k].x0; x < cells.runs[k].x1; ++x) {
-        const int here[3] = {x, y, z};
-        meet(layout.right_index(here[layout.frame.right.axis]), layout.up_index(here[layout.frame.up.axis]),
-             cells.runs[k].cell, depth);
+  };
+  // A row of voxels that are met one after the row before them: where both are of one cell, that was met already.
+  const auto along = [&](int y, int z, std::span<const CellRun> before, int depth) {
+    std::size_t k = 0;
+    for (const CellRun& run : row(y, z))
+      for (int x = run.x0; x < run.x1; ++x) {
+        while (k < before.size() && before[k].x1 <= x) ++k;
+        if (k < before.size() && before[k].x0 <= x && before[k].cell == run.cell) {
+          x = before[k].x1 - 1;
+          continue;
+        }
+        const int at[3] = {x, y, z};
+        meet(layout.right_index(at[layout.frame.right.axis]), layout.up_index(at[layout.frame.up.axis]), run.cell,
+             depth);
       }
   };
-  if (axis == 1) {
-    for (int d = 0; d < size.y(); ++d)
-      for (int z = 0; z < size.z(); ++z) visit_row(from_high ? size.y() - 1 - d : d, z, d);
+  if (axis == 0) {
+    for (int z = 0; z < size.z(); ++z)
+      for (int y = 0; y < size.y(); ++y) across(y, z);
   } else {
-    for (int d = 0; d < size.z(); ++d)
-      for (int y = 0; y < size.y(); ++y) visit_row(y, from_high ? size.z() - 1 - d : d, d);
+    const int other = 3 - axis, step = from_high ? 1 : -1;  // to the row before
+    for (int d = 0; d < size[axis]; ++d)
+      for (int n = 0; n < size[other]; ++n) {
+        int at[3];
+        at[axis] = from_high ? size[axis] - 1 - d : d;
+        at[other] = n;
+        int before[3] = {0, at[1], at[2]};
+        before[axis] += step;
+        along(at[1], at[2], d > 0 ? row(before[1], before[2]) : std::span<const CellRun>{}, d);
+      }
   }
   Rays rays{layout.width, layout.height, {0}, {}};
   rays.begin.reserve(last.size() + 1);
@@ -197,30 +238,58 @@ std::vector<Rays> trace(const Cells& cells, std::span<const RegionMap> views) {
 
 std::vector<int> counterparts(const Cells& own, const VoxelGrid& own_grid, const Cells& other,
                               const VoxelGrid& other_grid) {
-  const Vec3i& size = other.size;
-  Raster<int> cell_at(size.x(), size.y() * size.z(), -1);
-  for (const CellRun& run : other.runs)
-    std::fill_n(&cell_at(run.x0, run.z * size.y() + run.y), run.x1 - run.x0, run.cell);
-  const auto index = [&](int axis, int i) {
-    const double at = own_grid.low()[axis] + (i + 0.5) * own_grid.spacing() - other_grid.low()[axis];
-    return std::clamp(static_cast<int>(std::floor(at / other_grid.spacing())), 0, size[axis] - 1);
-  };
-  std::vector<int> column(own.size.x());
-  for (int x = 0; x < own.size.x(); ++x) column[x] = index(0, x);
+  // Along each axis, where the centres of own voxels lie in the other grid; along x, also the first in each of its
+  // voxels or beyond.
+  std::array<std::vector<int>, 3> places;
+  for (int axis = 0; axis < 3; ++axis)
+    for (int i = 0; i < own.size[axis]; ++i) {
+      const double at = own_grid.low()[axis] + (i + 0.5) * own_grid.spacing() - other_grid.low()[axis];
+      places[axis].push_back(
+          std::clamp(static_cast<int>(std::floor(at / other_grid.spacing())), 0, other.size[axis] - 1));
+    }
+  std::vector<int> first_in;
+  for (int x = 0; x <= other.size.x(); ++x)
+    first_in.push_back(static_cast<int>(std::ranges::lower_bound(places[0], x) - places[0].begin()));
+  const std::vector<int> begin = row_offsets(other.runs, other.size);
 
-  std::vector<std::map<int, std::int64_t>> shared(own.count);
-  for (const CellRun& run : own.runs) {
-    const int row = index(2, run.z) * size.y() + index(1, run.y);
-    for (int x = run.x0; x < run.x1;) {
-      const int cell = cell_at(column[x], row), first = x;
-      while (x < run.x1 && cell_at(column[x], row) == cell) ++x;
-      if (cell >= 0) shared[run.cell][cell] += x - first;
+  struct Share {
+    int other = -1;
+    std::int64_t voxels = 0;
+  };
+  std::vector<Share> recent(own.count);  // most runs lie in the same cell as the one before them
+  std::unordered_map<std::uint64_t, std::int64_t> shared;
+  const auto add = [&](int cell) {
+    if (const Share& share = recent[cell]; share.other >= 0)
+      shared[static_cast<std::uint64_t>(cell) << 32 | static_cast<std::uint32_t>(share.other)] += share.voxels;
+  };
+  for (std::size_t i = 0, j = 0; i < own.runs.size(); ++i) {
+    const CellRun& run = own.runs[i];
+    const std::size_t row = static_cast<std::size_t>(places[2][run.z]) * other.size.y() + places[1][run.y];
+    const std::size_t first = begin[row], last = begin[row + 1];
+    if (i == 0 || run.y != own.runs[i - 1].y || run.z != own.runs[i - 1].z) j = first;
+    while (j < last && first_in[other.runs[j].x1] <= run.x0) ++j;
+    for (std::size_t k = j; k < last && first_in[other.runs[k].x0] < run.x1; ++k) {
+      const CellRun& there = other.runs[k];
+      const int voxels = std::min(run.x1, first_in[there.x1]) - std::max(run.x0, first_in[there.x0]);
+      if (voxels <= 0) continue;
+      if (recent[run.cell].other != there.cell) {
+        add(run.cell);
+        recent[run.cell] = {there.cell, 0};
+      }
+      recent[run.cell].voxels += voxels;
     }
   }
-  std::vector<int> out(own.count, -1);
-  for (int c = 0; c < own.count; ++c)
-    if (!shared[c].empty())
-      out[c] = std::ranges::max_element(shared[c], {}, [](const auto& part) { return part.second; })->first;
+  for (int c = 0; c < own.count; ++c) add(c);
+
+  std::vector<Share> best(own.count);
+  for (const auto& [pair, voxels] : shared) {
+    const int there = static_cast<int>(pair & 0xffffffff);
+    Share& share = best[pair >> 32];
+    if (voxels > share.voxels || (voxels == share.voxels && there < share.other)) share = {there, voxels};
+  }
+  std::vector<int> out;
+  out.reserve(own.count);
+  for (const Share& share : best) out.push_back(share.other);
   return out;
 }
 
