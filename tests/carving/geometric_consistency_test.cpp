@@ -128,7 +128,13 @@ TEST(Consistency, ResultDoesNotDependOnThreads) {
 TEST(Consistency, NodesAreBounded) {
   const ViewSet views = views_of(walled_stairs_world(8), kThreeViews);
   const Carving hull = carve_silhouettes(views, {.grid = 50});
-  EXPECT_LE(apply_consistency(hull, views, {.grid = {}, .vote = false, .nodes = 100}).nodes, 200);
+  const auto nodes = [&](Consistency arm, int limit) {
+    return apply_consistency(hull, views, {.arm = arm, .grid = {}, .vote = false, .nodes = limit}).nodes;
+  };
+  const std::int64_t one_pass = nodes(Consistency::two_level, 0);
+  EXPECT_LE(nodes(Consistency::solver, 100), 200 + one_pass);  // that it falls back to
+  EXPECT_GT(nodes(Consistency::solver, 10000), 2000 + one_pass);
+  EXPECT_LE(nodes(Consistency::solver, 10000), 10100);
 }
 
 TEST(Consistency, SolverWithoutNodesFallsBackToOnePassAndSaysSo) {

@@ -301,16 +301,21 @@ std::int64_t CellProblem::flip(std::span<const int> cells) {
     if (now > was) set_open(ray, was, now, 1);
     if (now < was) set_open(ray, now, was, -1);
   }
+  std::int64_t strokes = 0, jumps = 0, looks = 0;
   for (const int k : changed_)
     for (const int g : groups_of_[k]) {
       if (group_mark_[g] == stamp_) continue;
       group_mark_[g] = stamp_;
-      ++looks_;
-      Pay& value = groups_[g].value;
-      strokes_ -= value.stroke, jumps_ -= value.jump;
-      value = value_of(groups_[g]);
-      strokes_ += value.stroke, jumps_ += value.jump;
+      ++looks;
+      Group& group = groups_[g];
+      const Pay value = value_of(group);
+      strokes += value.stroke - group.value.stroke;
+      jumps += value.jump - group.value.jump;
+      group.value = value;
     }
+  strokes_ += strokes;
+  jumps_ += jumps;
+  looks_ += looks;
   energy_ += misfit() - misfit_before;
   for (const int c : cells) touched_.push_back(c);
   for (const int c : touched_) {

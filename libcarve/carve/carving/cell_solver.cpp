@@ -9,13 +9,15 @@ namespace carve {
 namespace {
 
 /// Which cells hide which, and the columns of cells that are decided together.
-struct Order {
+struct Arrangement {
+  int views = 0;
   std::vector<std::vector<int>> columns;                        // behind one region of a view: nearest first
   std::array<std::vector<std::vector<int>>, 6> before, behind;  // per view and cell: met directly before, after it
 };
 
-Order order_of(const Cells& cells) {
-  Order out;
+Arrangement arrangement(const Cells& cells) {
+  Arrangement out;
+  out.views = static_cast<int>(cells.rays.size());
   for (std::size_t v = 0; v < cells.rays.size(); ++v) {
     const Rays& rays = cells.rays[v];
     std::vector<std::int64_t> sum(cells.count, 0), seen(cells.count, 0);
@@ -48,22 +50,54 @@ Order order_of(const Cells& cells) {
 
 class Search {
  public:
-  Search(CellProblem& problem, Order order, int views, const SearchLimit& limit)
+  Search(CellProblem& problem, Arrangement arranged, const SearchLimit& limit)
       : problem_(problem),
-        order_(std::move(order)),
-        views_(views),
+        arranged_(std::move(arranged)),
+        views_(arranged_.views),
         limit_(limit.nodes),
         until_(limit.until),
-        mark_(problem.cells(), 0) {}
+        mark_(problem.cells(), 0),
+        changed_(problem.cells(), 0) {}
 
   SearchEnd run() {
     descend();
     anneal();
     descend();
-    return {nodes_, !late_};
+    return {nodes_, !late_, looked_at_all_};
   }
 
+  /// Drops cells with all that hides them in two views, or alone.
+  void drop_once() {
+    constexpr std::size_t kMost = 60;  // cells
+    Moves moves;
+    std::vector<int> move;
+    for (int c = 0; c < problem_.cells(); ++c) {
+      if (!problem_.keep()[c]) continue;
+      for (int v = 0; v < views_; ++v)
+        for (int w = 0; w < v; ++w)
+          if (open_or_fill(c, v, w, true, kMost, move)) look_at(move, moves);
+      move.assign(1, c);
+      look_at(move, moves);
+    }
+    apply(moves);
+  }
+
+  /// Drops or restores single cells.
+  void flip_once() {
+    Moves moves;
+    std::vector<int> move;
+    for (int c = 0; c < problem_.cells(); ++c) {
+      move.assign(1, c);
+      look_at(move, moves);
+    }
+    apply(moves);
+  }
+
+  std::int64_t nodes() const { return nodes_; }
+
  private:
+  using Moves = std::vector<std::pair<std::int64_t, std::vector<int>>>;  // by what each changes by itself
+
   /// The clock is asked now and then only; most searches have none to ask.
   bool ended() {
     if (until_ && !late_ && ++asked_ % 64 == 0) late_ = std::chrono::steady_clock::now() >= *until_;
@@ -91,7 +125,7 @@ class Search {
       const int c = queue_[k];
       if (problem_.keep()[c] == drop) move.push_back(c);
       for (const int view : {v, w})
-        for (const int n : (drop ? order_.before : order_.behind)[view][c])
+        for (const int n : (drop ? arranged_.before : arranged_.behind)[view][c])
           if (mark_[n] != stamp_) {
             mark_[n] = stamp_;
             queue_.push_back(n);
@@ -112,35 +146,97 @@ class Search {
     }
   }
 
-  void try_move(std::vector<int>& move) {
+  void look_at(std::vector<int>& move, Moves& moves) {
     mirror(move);
-    const std::int64_t energy = problem_.energy();
     nodes_ += static_cast<std::int64_t>(move.size());
+    if (const std::int64_t change = problem_.flip(move); change < 0) moves.emplace_back(change, move);
     problem_.flip(move);
-    if (problem_.energy() >= energy) problem_.flip(move);
   }
 
+  /// What lowers the energy most by itself first; cells that another move flipped already stay as they are, and what no
+  /// longer lowers the energy is left.
+  void apply(Moves& moves) {
+    std::ranges::sort(moves);
+    const std::vector<std::uint8_t> before = state();
+    for (auto& [gain, move] : moves) {
+      std::erase_if(move, [&](int c) { return problem_.keep()[c] != before[c]; });
+      nodes_ += static_cast<std::int64_t>(move.size());
+      if (!move.empty() && problem_.flip(move) >= 0) problem_.flip(move);
+    }
+  }
+
+  void try_move(std::vector<int>& move) {
+    mirror(move);
+    nodes_ += static_cast<std::int64_t>(move.size());
+    if (problem_.flip(move) >= 0)
+      problem_.flip(move);
+    else
+      change(move);
+  }
+
+  /// What is next to the cells that were flipped is to be looked at again.
+  void change(std::span<const int> cells) {
+    ++time_;
+    for (const int c : cells) {
+      changed_[c] = time_;
+      const auto touch = [&](int n) {
+        if (n >= 0) changed_[n] = time_;
+      };
+      problem_.each_neighbour(c, touch);
+      for (int v = 0; v < views_; ++v) {
+        std::ranges::for_each(arranged_.before[v][c], touch);
+        std::ranges::for_each(arranged_.behind[v][c], touch);
+      }
+    }
+  }
+
+  std::vector<std::uint8_t> state() const { return {problem_.keep().begin(), problem_.keep().end()}; }
+
+  /// Until nothing changes any more; what nothing changed next to is not looked at again.
   void descend() {
+    const std::vector<std::int64_t> never(problem_.cells(), -1);
+    std::vector<std::int64_t> opened = never, flipped = never, levelled(arranged_.columns.size(), -1);
     for (std::int64_t before = problem_.energy() + 1; problem_.energy() < before && !ended();) {
       before = problem_.energy();
-      std::vector<int> move;
-      const std::size_t most = std::max<std::size_t>(4, limit_ / 12 / std::max(1, problem_.cells()));
-      for (int c = 0; c < problem_.cells(); ++c)
-        for (int v = 0; v < views_; ++v)
-          for (int w = 0; w < v; ++w) {
-            if (ended()) return;
-            if (open_or_fill(c, v, w, problem_.keep()[c], most, move)) try_move(move);
-          }
-      for (const std::vector<int>& column : order_.columns) {
-        if (ended()) return;
-        try_in_order(column, true);
-        try_in_order(std::vector<int>(column.rbegin(), column.rend()), false);
-        try_levels(column);
-      }
-      for (int c = 0; c < problem_.cells() && !ended(); ++c) {
-        move.assign(1, c);
-        try_move(move);
-      }
+      level_each(levelled);
+      flip_each(flipped);
+      looked_at_all_ = looked_at_all_ || !ended();
+      open_each(opened);
+    }
+  }
+
+  void level_each(std::vector<std::int64_t>& levelled) {
+    for (std::size_t k = 0; k < arranged_.columns.size() && !ended(); ++k) {
+      const std::vector<int>& column = arranged_.columns[k];
+      if (std::ranges::all_of(column, [&](int c) { return changed_[c] <= levelled[k]; })) continue;
+      levelled[k] = time_;
+      try_in_order(column, true);
+      try_in_order(std::vector<int>(column.rbegin(), column.rend()), false);
+      try_levels(column);
+    }
+  }
+
+  void flip_each(std::vector<std::int64_t>& flipped) {
+    std::vector<int> move;
+    for (int c = 0; c < problem_.cells() && !ended(); ++c) {
+      if (changed_[c] <= flipped[c]) continue;
+      flipped[c] = time_;
+      move.assign(1, c);
+      try_move(move);
+    }
+  }
+
+  void open_each(std::vector<std::int64_t>& opened) {
+    const std::size_t most = std::max<std::size_t>(4, limit_ / 12 / std::max(1, problem_.cells()));
+    std::vector<int> move;
+    for (int c = 0; c < problem_.cells(); ++c) {
+      if (changed_[c] <= opened[c]) continue;
+      opened[c] = time_;
+      for (int v = 0; v < views_; ++v)
+        for (int w = 0; w < v; ++w) {
+          if (ended()) return;
+          if (open_or_fill(c, v, w, problem_.keep()[c], most, move)) try_move(move);
+        }
     }
   }
 
@@ -156,6 +252,7 @@ class Search {
       if (problem_.energy() < best_energy) best_energy = problem_.energy(), best = flipped.size();
     }
     for (; flipped.size() > best; flipped.pop_back()) flip(flipped.back());
+    change(flipped);
   }
 
   /// Drops the first n cells and keeps the rest, for the best n, if that is better than what is.
@@ -175,12 +272,18 @@ class Search {
     const bool better = best_energy < energy;
     for (std::size_t k = 0; k < column.size(); ++k)
       if ((better ? k >= best : before[k]) != problem_.keep()[column[k]]) flip(column[k]);
+    if (!better) return;
+    std::vector<int> flipped;
+    for (std::size_t k = 0; k < column.size(); ++k)
+      if (problem_.keep()[column[k]] != before[k]) flipped.push_back(column[k]);
+    change(flipped);
   }
 
   void anneal() {
     constexpr double kHot = 50, kCold = 1;  // in units of the energy: sides of grid pixels
+    constexpr int kFewest = 100;            // steps a cell; with less it was never seen to find anything better
     const std::int64_t start = spent(), steps = (limit_ - start) * 9 / 10;
-    if (problem_.cells() == 0 || steps <= 0) return;
+    if (problem_.cells() == 0 || steps < kFewest * problem_.cells()) return;
     std::vector<std::uint8_t> best(problem_.keep().begin(), problem_.keep().end());
     std::int64_t best_energy = problem_.energy();
     std::vector<int> move;
@@ -212,8 +315,8 @@ class Search {
     if (kind == 2 && views_ > 1) {
       const int v = static_cast<int>(random_.below(views_)), w = static_cast<int>(random_.below(views_ - 1));
       if (!open_or_fill(cell, v, w < v ? w : w + 1, problem_.keep()[cell], 16, move)) move.assign(1, cell);
-    } else if (kind == 3 && !order_.columns.empty()) {
-      const std::vector<int>& column = order_.columns[random_.below(order_.columns.size())];
+    } else if (kind == 3 && !arranged_.columns.empty()) {
+      const std::vector<int>& column = arranged_.columns[random_.below(arranged_.columns.size())];
       const std::size_t level = random_.below(column.size() + 1);
       move.clear();
       for (std::size_t k = 0; k < column.size(); ++k)
@@ -222,35 +325,30 @@ class Search {
   }
 
   CellProblem& problem_;
-  Order order_;
+  Arrangement arranged_;
   int views_;
   std::int64_t limit_, looks_before_ = problem_.looks(), nodes_ = 0, asked_ = 0;
   std::optional<std::chrono::steady_clock::time_point> until_;
-  bool late_ = false;
+  bool late_ = false, looked_at_all_ = false;
   std::vector<int> queue_, mark_;
   int stamp_ = 0;
+  std::vector<std::int64_t> changed_;  // when something next to a cell changed last
+  std::int64_t time_ = 0;
   Random random_;
 };
 
 }  // namespace
 
-std::int64_t drop_in_one_pass(CellProblem& problem) {
-  // A cell goes with its mirror image, if that still stands as it does.
-  const auto flip = [&](int c) {
-    const int m = problem.mirror(c);
-    const int both[] = {c, m};
-    return problem.flip(std::span(both, m >= 0 && problem.keep()[m] == problem.keep()[c] ? 2 : 1));
-  };
-  std::vector<std::pair<std::int64_t, int>> gains;
-  for (int c = 0; c < problem.cells(); ++c) {
-    const std::int64_t change = flip(c);
-    flip(c);
-    if (change < 0) gains.emplace_back(change, c);
-  }
-  std::ranges::sort(gains);
-  for (const auto& [gain, c] : gains)
-    if (problem.keep()[c] && flip(c) >= 0) flip(c);
-  return problem.cells() + static_cast<std::int64_t>(gains.size());
+std::int64_t drop_in_one_pass(CellProblem& problem, const Cells& cells) {
+  Search search(problem, arrangement(cells), {});
+  search.drop_once();
+  return search.nodes();
+}
+
+std::int64_t flip_in_one_pass(CellProblem& problem) {
+  Search search(problem, {}, {});
+  search.flip_once();
+  return search.nodes();
 }
 
 void restore_unexplained(CellProblem& problem) {
@@ -276,7 +374,7 @@ void restore_unexplained(CellProblem& problem) {
 }
 
 SearchEnd search_cells(CellProblem& problem, const Cells& cells, const SearchLimit& limit) {
-  return Search(problem, order_of(cells), static_cast<int>(cells.rays.size()), limit).run();
+  return Search(problem, arrangement(cells), limit).run();
 }
 
 }  // namespace carve

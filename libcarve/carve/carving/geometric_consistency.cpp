@@ -167,16 +167,22 @@ void find_others(const Input& in, Carved& carved) {
   carved.result.open_cells = boxes_of(in.cells, open, carved.keep);
 }
 
+Choice in_one_pass(const Cut& cut, const Choice* first) {
+  Choice choice{begun(cut, first), Consistency::two_level, 0};
+  choice.nodes = first ? 0 : drop_in_one_pass(choice.problem, cut.cells);
+  choice.nodes += flip_in_one_pass(choice.problem);
+  return choice;
+}
+
 Carved two_level(const Input& in) {
-  return by_cells(in, [](const Cut& cut, const Choice*) {
-    Choice choice{cut.hull, Consistency::two_level, 0};
-    choice.nodes = drop_in_one_pass(choice.problem);
+  return by_cells(in, [](const Cut& cut, const Choice* first) {
+    Choice choice = in_one_pass(cut, first);
     restore_unexplained(choice.problem);
     return choice;
   });
 }
 
-/// The search, or one pass where that ends lower: a search that was cut short may.
+/// The search; where it was cut short before it looked at all cells, one pass if that ends lower.
 Carved solver(const Input& in) {
   return by_cells(in, [&](const Cut& cut, const Choice* first) {
     constexpr int kShorter = 12;  // a search that begins where another ended
@@ -184,12 +190,13 @@ Carved solver(const Input& in) {
     SearchLimit limit = in.limit;
     if (first) limit.nodes /= kShorter;
     const SearchEnd end = search_cells(choice.problem, cut.cells, limit);
-    CellProblem other = cut.hull;
-    choice.nodes = end.nodes + drop_in_one_pass(other);
+    choice.nodes = end.nodes;
     choice.in_time = end.in_time;
-    if (other.energy() < choice.problem.energy()) {
-      choice.ran = Consistency::two_level;
-      choice.problem = std::move(other);
+    if (!end.looked_at_all && (!first || first->ran == Consistency::two_level)) {
+      Choice pass = in_one_pass(cut, first);
+      pass.nodes += choice.nodes;
+      pass.in_time = choice.in_time;
+      if (pass.problem.energy() < choice.problem.energy()) choice = std::move(pass);
     }
     restore_unexplained(choice.problem);
     return choice;
