@@ -27,7 +27,9 @@ namespace carve::experiments {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int kOccupancyGrid = 128;
+/// Voxels along the longest side of the grid that solids are compared on: those of the run. On half as many, centres
+/// would lie on the faces of the run's voxels, neither inside nor outside; an odd number avoids that on larger grids.
+int occupancy_grid(const MethodInput& input) { return std::min(input.options.pipeline.carve.grid, 511); }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -43,13 +45,13 @@ void measure_points(const std::vector<Vec3>& points, const Reference& reference,
 }
 
 void measure_against(const Model& model, const Mesh& reference, const MethodOutput& output,
-                     const CompareOptions& options, Record& record) {
+                     const CompareOptions& options, int grid_size, Record& record) {
   const Reference prepared(reference, options);
   for (const Score& score : scores(prepared.compare(output.mesh), prepared)) {
     const auto value = score.percent ? score.percent : score.value;
     if (value) record.metrics[score.name()] = *value;
   }
-  const VoxelGrid grid = grid_of(model, kOccupancyGrid);
+  const VoxelGrid grid = grid_of(model, grid_size);
   record.metrics["iou"] = intersection_over_union(occupancy(model, grid), occupancy({.mesh = output.mesh}, grid));
   if (!output.points.empty()) measure_points(output.points, prepared, record);
 }
@@ -57,7 +59,7 @@ void measure_against(const Model& model, const Mesh& reference, const MethodOutp
 void measure_shadows(const Mesh& mesh, const MethodInput& input, Record& record) {
   const ViewSet views = align(input.drawings, input.options.pipeline.align);
   double sum = 0;
-  const VoxelGrid grid = grid_over(views.low(), views.high(), kOccupancyGrid);
+  const VoxelGrid grid = grid_over(views.low(), views.high(), occupancy_grid(input));
   for (const ViewAgreement& fit : agreement(occupancy({.mesh = mesh}, grid), views)) sum += fit.silhouette_iou;
   record.metrics["silhouette_iou"] = sum / static_cast<double>(views.views.size());
   record.metrics["disagreement"] = views.disagreement;
@@ -132,7 +134,7 @@ void run_cell(const fs::path& results, const std::string& spec, const Cell& cell
   if (subject.model) {
     record.provenance[kReferenceKey] = content;
     measure_against(*subject.model, reference_of(results, *subject.model, content), output, input.options.evaluate,
-                    record);
+                    occupancy_grid(input), record);
   }
   measure_shadows(output.mesh, input, record);
   if (!output.textured.texture.empty()) measure_texture(output.textured, input, record);

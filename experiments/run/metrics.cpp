@@ -44,8 +44,9 @@ std::vector<RunMetric> all_metrics() {
     }
   }
   const RunMetric own[] = {
-      {"iou", "volume of intersection over union with the base model's occupancy, 128 voxels along the longest side",
-       "", Direction::higher},
+      {"iou",
+       "volume of intersection over union with the base model's occupancy, on as many voxels as the run's grid has", "",
+       Direction::higher},
       {"silhouette_iou", "mean over the drawings of the IoU of silhouette and the solid's shadow", "",
        Direction::higher},
       {"disagreement", "largest relative difference of two drawings' extents along a shared axis", "",
