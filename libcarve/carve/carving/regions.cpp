@@ -61,7 +61,7 @@ class CutDrawing::Work {
     const Sample at = sample(seen, hull);
     const std::vector<int> name = name_regions(out, at);
     find_colours(out, name);
-    find_borders(out, at, scale_ * hull.spacing());
+    find_borders(out, at, std::max(voxel_, scale_ * hull.spacing()));
     return out;
   }
 
@@ -188,7 +188,7 @@ class CutDrawing::Work {
     return false;
   }
 
-  /// \param voxel  pixels
+  /// \param voxel  pixels; what is near does not shrink on finer grids
   void find_borders(RegionMap& out, const Sample& sample, double voxel) const {
     constexpr double kNear = 1.5;  // voxels
     const int w = edge_.width, width = sample.pixel.width, height = sample.pixel.height;
