@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "carve/core/random.h"
 
@@ -60,8 +61,12 @@ class Search {
         changed_(problem.cells(), 0) {}
 
   SearchEnd run() {
+    const std::vector<std::uint8_t> start = state();
     descend();
-    anneal();
+    if (enough_to_anneal())
+      anneal();
+    else if (2 * spent() < limit_)
+      start_again(start);
     descend();
     return {nodes_, !late_, looked_at_all_};
   }
@@ -71,7 +76,7 @@ class Search {
     constexpr std::size_t kMost = 60;  // cells
     Moves moves;
     std::vector<int> move;
-    for (int c = 0; c < problem_.cells(); ++c) {
+    for (int c = 0; c < problem_.cells() && !ended(); ++c) {
       if (!problem_.keep()[c]) continue;
       for (int v = 0; v < views_; ++v)
         for (int w = 0; w < v; ++w)
@@ -279,11 +284,56 @@ class Search {
     change(flipped);
   }
 
+  /// With less steps a cell it was never seen to find anything better.
+  bool enough_to_anneal() const {
+    constexpr int kFewest = 100;
+    return problem_.cells() > 0 && (limit_ - spent()) * 9 / 10 >= kFewest * problem_.cells();
+  }
+
+  /// Descends from where drop_once() leads to, and takes over what is better there.
+  void start_again(std::span<const std::uint8_t> start) {
+    const std::vector<std::uint8_t> one = state();
+    const std::int64_t energy = problem_.energy();
+    become(start);
+    drop_once();
+    descend();
+    const std::vector<std::uint8_t> other = state();
+    if (problem_.energy() < energy) return join(one);
+    become(one);
+    join(other);
+  }
+
+  void become(std::span<const std::uint8_t> state) {
+    std::vector<int> move;
+    for (int c = 0; c < problem_.cells(); ++c)
+      if (problem_.keep()[c] != state[c]) move.push_back(c);
+    problem_.flip(move);
+    change(move);
+  }
+
+  /// Takes over each connected part in which another choice differs, with its mirror image, if that is better.
+  void join(std::span<const std::uint8_t> other) {
+    std::vector<std::uint8_t> differs(problem_.cells());
+    for (int c = 0; c < problem_.cells(); ++c) differs[c] = problem_.keep()[c] != other[c];
+    std::vector<int> part;
+    const auto add = [&](int c) {
+      if (c >= 0 && differs[c]) part.push_back(c), differs[c] = 0;
+    };
+    for (int first = 0; first < problem_.cells(); ++first) {
+      part.clear();
+      add(first);
+      for (std::size_t k = 0; k < part.size(); ++k) {
+        add(problem_.mirror(part[k]));
+        problem_.each_neighbour(part[k], add);
+      }
+      nodes_ += static_cast<std::int64_t>(part.size());
+      if (!part.empty() && problem_.flip(part) >= 0) problem_.flip(part);
+    }
+  }
+
   void anneal() {
     constexpr double kHot = 50, kCold = 1;  // in units of the energy: sides of grid pixels
-    constexpr int kFewest = 100;            // steps a cell; with less it was never seen to find anything better
     const std::int64_t start = spent(), steps = (limit_ - start) * 9 / 10;
-    if (problem_.cells() == 0 || steps < kFewest * problem_.cells()) return;
     std::vector<std::uint8_t> best(problem_.keep().begin(), problem_.keep().end());
     std::int64_t best_energy = problem_.energy();
     std::vector<int> move;
@@ -340,7 +390,7 @@ class Search {
 }  // namespace
 
 std::int64_t drop_in_one_pass(CellProblem& problem, const Cells& cells) {
-  Search search(problem, arrangement(cells), {});
+  Search search(problem, arrangement(cells), {std::numeric_limits<std::int64_t>::max(), {}});
   search.drop_once();
   return search.nodes();
 }
