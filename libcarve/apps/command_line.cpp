@@ -4,6 +4,7 @@
 #include <new>
 
 #include "carve/core/error.h"
+#include "carve/core/pages.h"
 #include "carve/core/parallel.h"
 
 namespace carve {
@@ -64,6 +65,7 @@ void add_reference_flag(CLI::App& app, std::filesystem::path& reference) {
 }
 
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& work) {
+  keep_freed_memory();
   try {
     app.parse(argc, argv);
     return work();

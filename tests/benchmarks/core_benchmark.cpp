@@ -4,6 +4,7 @@
 #include <map>
 
 #include "carve/carving/carve_silhouettes.h"
+#include "carve/core/pages.h"
 #include "carve/core/parallel.h"
 #include "carve/pipeline/reconstruct.h"
 #include "carve/surface/crossings.h"
@@ -122,6 +123,7 @@ void measure_model(benchmark::State& state, const std::string& name, Consistency
 }
 
 const bool kModelsAreRegistered = [] {
+  keep_freed_memory();  // as programs do
   for (const std::string& name : experiments::expand_subjects({"set:procedural", "set:artist", "set:drawing"}))
     for (const Consistency arm : {Consistency::none, Consistency::solver})
       benchmark::RegisterBenchmark(("BM_Model/" + name + "/" + names(arm)[static_cast<int>(arm)]).c_str(),
