@@ -16,8 +16,8 @@ void give_pages(void* block, std::size_t bytes) noexcept;
 /// Asks the system for huge pages under memory that has been reserved but not touched.
 void prefer_huge_pages(void* data, std::size_t bytes);
 
-/// For programs, at their start: small and middling blocks (to 32 MB) that are given back are kept for the next ones, to
-/// 256 MB, by the C library too. Without it smoothing a large mesh takes twice as long: most of that is fresh pages.
+/// For programs, at their start: small and middling blocks (to 32 MB) that are given back are kept for the next ones,
+/// to 256 MB, by the C library too. Without it smoothing a large mesh takes twice as long: most of that is fresh pages.
 void keep_freed_memory();
 
 /// vector.resize(count) for a large empty vector, on huge pages where the system has them.
