@@ -54,6 +54,11 @@ TEST(Consistency, SolverClimbsWalledStairs) {
     EXPECT_GT(iou(walled_stairs_world(steps), Consistency::solver, 5 * steps + 10), 0.99);
 }
 
+TEST(Consistency, OnePassClimbsFewWalledStairs) {
+  for (const int steps : {3, 5})
+    EXPECT_GT(iou(walled_stairs_world(steps), Consistency::two_level, 5 * steps + 10), 0.99);
+}
+
 TEST(Consistency, BrokenStrokesAreClosed) {
   EXPECT_GT(iou(couch(), Consistency::solver, 40, {.broken = 4}), 0.99);
   EXPECT_GT(iou(walled_stairs_world(5), Consistency::solver, 35, {.broken = 4}), 0.99);

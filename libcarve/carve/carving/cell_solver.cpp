@@ -49,6 +49,26 @@ Arrangement arrangement(const Cells& cells) {
   return out;
 }
 
+/// Calls use(part) for each connected part of the chosen cells; mirror images are connected too.
+template <class Use>
+void each_part(const CellProblem& problem, std::vector<std::uint8_t> chosen, Use&& use) {
+  std::vector<int> part;
+  const auto add = [&](int c) {
+    if (c < 0 || !chosen[c]) return;
+    chosen[c] = 0;
+    part.push_back(c);
+  };
+  for (int first = 0; first < problem.cells(); ++first) {
+    part.clear();
+    add(first);
+    for (std::size_t k = 0; k < part.size(); ++k) {
+      add(problem.mirror(part[k]));
+      problem.each_neighbour(part[k], add);
+    }
+    if (!part.empty()) use(std::span<const int>(part));
+  }
+}
+
 class Search {
  public:
   Search(CellProblem& problem, Arrangement arranged, const SearchLimit& limit)
@@ -311,24 +331,14 @@ class Search {
     change(move);
   }
 
-  /// Takes over each connected part in which another choice differs, with its mirror image, if that is better.
+  /// Takes over each connected part in which another choice differs, if that is better.
   void join(std::span<const std::uint8_t> other) {
     std::vector<std::uint8_t> differs(problem_.cells());
     for (int c = 0; c < problem_.cells(); ++c) differs[c] = problem_.keep()[c] != other[c];
-    std::vector<int> part;
-    const auto add = [&](int c) {
-      if (c >= 0 && differs[c]) part.push_back(c), differs[c] = 0;
-    };
-    for (int first = 0; first < problem_.cells(); ++first) {
-      part.clear();
-      add(first);
-      for (std::size_t k = 0; k < part.size(); ++k) {
-        add(problem_.mirror(part[k]));
-        problem_.each_neighbour(part[k], add);
-      }
+    each_part(problem_, std::move(differs), [&](std::span<const int> part) {
       nodes_ += static_cast<std::int64_t>(part.size());
-      if (!part.empty() && problem_.flip(part) >= 0) problem_.flip(part);
-    }
+      if (problem_.flip(part) >= 0) problem_.flip(part);
+    });
   }
 
   void anneal() {
@@ -402,25 +412,14 @@ std::int64_t flip_in_one_pass(CellProblem& problem) {
 }
 
 void restore_unexplained(CellProblem& problem) {
-  std::vector<std::uint8_t> seen(problem.cells(), 0);
-  for (int first = 0; first < problem.cells(); ++first) {
-    if (seen[first] || problem.keep()[first]) continue;
-    std::vector<int> part{first};
-    seen[first] = 1;
-    for (std::size_t k = 0; k < part.size(); ++k) {
-      const auto add = [&](int c) {
-        if (c < 0 || seen[c] || problem.keep()[c]) return;
-        seen[c] = 1;
-        part.push_back(c);
-      };
-      add(problem.mirror(part[k]));
-      problem.each_neighbour(part[k], add);
-    }
+  std::vector<std::uint8_t> dropped(problem.cells());
+  for (int c = 0; c < problem.cells(); ++c) dropped[c] = !problem.keep()[c];
+  each_part(problem, std::move(dropped), [&](std::span<const int> part) {
     const std::int64_t strokes = problem.strokes(), jumps = problem.jumps();
     problem.flip(part);
     const std::int64_t explained = problem.strokes() - strokes, added = jumps - problem.jumps();
     if (4 * added <= explained) problem.flip(part);
-  }
+  });
 }
 
 SearchEnd search_cells(CellProblem& problem, const Cells& cells, const SearchLimit& limit) {
