@@ -328,7 +328,6 @@ class Search {
     for (int c = 0; c < problem_.cells(); ++c)
       if (problem_.keep()[c] != state[c]) move.push_back(c);
     problem_.flip(move);
-    change(move);
   }
 
   /// Takes over each connected part in which another choice differs, if that is better.
@@ -344,7 +343,7 @@ class Search {
   void anneal() {
     constexpr double kHot = 50, kCold = 1;  // in units of the energy: sides of grid pixels
     const std::int64_t start = spent(), steps = (limit_ - start) * 9 / 10;
-    std::vector<std::uint8_t> best(problem_.keep().begin(), problem_.keep().end());
+    std::vector<std::uint8_t> best = state();
     std::int64_t best_energy = problem_.energy();
     std::vector<int> move;
     while (spent() - start < steps && !ended()) {
@@ -359,7 +358,7 @@ class Search {
         problem_.flip(move);
       } else if (problem_.energy() < best_energy) {
         best_energy = problem_.energy();
-        best.assign(problem_.keep().begin(), problem_.keep().end());
+        best = state();
       }
       nodes_ += 1 + static_cast<std::int64_t>(move.size());
     }
