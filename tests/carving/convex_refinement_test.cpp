@@ -105,6 +105,24 @@ TEST_P(ConvexTest, NoiseIsNoFault) {
   EXPECT_TRUE(contains(full, refined(full, views)));
 }
 
+TEST_P(ConvexTest, TheScaleAxisOnlyTakesAway) {
+  EXPECT_TRUE(contains(refined(hull_, views_, {.scale = 0}), refined(hull_, views_)));
+}
+
+TEST(Convex, TheScaleAxisRoundsSolidsThatLookGrownAndNoOthers) {
+  int rounded = 0;
+  for (unsigned seed = 0; seed < 24; ++seed) {
+    const ViewSet views = random_bodies(seed);
+    const VoxelGrid solid = hull(views, 72);
+    const auto count = [&](double grown, double scale) {
+      return refined(solid, views, {.grown = grown, .scale = scale}).count();
+    };
+    rounded += count(-1, 2) < count(-1, 0);
+    EXPECT_EQ(count(1.01, 2), count(1.01, 0)) << seed;
+  }
+  EXPECT_GE(rounded, 20);
+}
+
 TEST(Convex, SomeBodiesAreRounded) {
   int rounded = 0;
   for (unsigned seed = 0; seed < 24; ++seed) {

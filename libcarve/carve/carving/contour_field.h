@@ -15,6 +15,7 @@ class ContourField {
  public:
   ContourField(const VoxelGrid& solid, const ViewSet& views, const ConvexOptions& options);
   bool rounds() const { return rounds_[0] || rounds_[1] || rounds_[2]; }
+  bool looks_grown() const { return soften_ > 0; }
   /// How far around a ray what it keeps is to be kept too, in voxels.
   int soften() const { return soften_; }
   /// The values of layer z: field[y * nx + x].

@@ -4,11 +4,15 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <mutex>
+#include <optional>
+#include <span>
 
 #include "carve/carving/contour_field.h"
 #include "carve/carving/convex_as_printed.h"
+#include "carve/carving/scale_axis.h"
 #include "carve/core/options.h"
 #include "carve/core/parallel.h"
 
@@ -18,21 +22,22 @@ namespace {
 constexpr float kTolerance = 1e-4f;  // a mirrored solid gives the mirrored result
 constexpr float kClearance = 0.02f;  // voxels between a crossing and the centres
 
+/// How far out voxels lie: 1 on the rounded surface. Layer z: values[y * nx + x].
+using Layer = std::function<void(int z, std::vector<float>& values)>;
+
 /// The least value on the rays of each view: voxels up to it stay, so that every shadow does.
 class RayMinima {
  public:
-  explicit RayMinima(const Vec3i& size) : size_(size) {
-    xy_.assign(static_cast<std::size_t>(size.x()) * size.y(), kNone);
-    zy_.assign(static_cast<std::size_t>(size.z()) * size.y(), kNone);
-    xz_.assign(static_cast<std::size_t>(size.x()) * size.z(), kNone);
-  }
-
-  void find(const VoxelGrid& solid, const ContourField& field) {
+  /// \param reach  how far around a ray what it keeps is to be kept too, in voxels
+  RayMinima(const VoxelGrid& solid, const Layer& layer, int reach) : size_(solid.size()) {
+    xy_.assign(static_cast<std::size_t>(size_.x()) * size_.y(), kNone);
+    zy_.assign(static_cast<std::size_t>(size_.z()) * size_.y(), kNone);
+    xz_.assign(static_cast<std::size_t>(size_.x()) * size_.z(), kNone);
     std::mutex mutex;
     parallel_ranges(0, size_.z(), 8, [&](int first, int last) {
       std::vector<float> values, xy(xy_.size(), std::numeric_limits<float>::max());
       for (int z = first; z < last; ++z) {
-        field.layer(z, values);
+        layer(z, values);
         each_voxel(solid, z, [&](int x, int y, std::size_t pixel) {
           for (float* least : {&xy[pixel], &zy_[index(z, y)], &xz_[static_cast<std::size_t>(z) * size_.x() + x]})
             *least = std::min(*least, values[pixel]);
@@ -41,9 +46,9 @@ class RayMinima {
       const std::lock_guard lock(mutex);
       for (std::size_t i = 0; i < xy.size(); ++i) xy_[i] = std::min(xy_[i], xy[i]);
     });
-    soften(xy_, size_.x(), field.soften());
-    soften(zy_, size_.z(), field.soften());
-    soften(xz_, size_.x(), field.soften());
+    soften(xy_, size_.x(), reach);
+    soften(zy_, size_.z(), reach);
+    soften(xz_, size_.x(), reach);
   }
 
   /// Up to where voxels stay on the rays through (x, y, z).
@@ -104,15 +109,21 @@ class RayMinima {
   std::vector<float> xy_, zy_, xz_;
 };
 
-/// The solid's voxels that do not lie outside their contours.
-VoxelGrid rounded(const VoxelGrid& solid, const ContourField& field, const RayMinima& minima) {
+/// One step of rounding.
+struct Rounding {
+  Layer layer;
+  RayMinima minima;
+};
+
+/// The solid's voxels that do not lie outside.
+VoxelGrid rounded(const VoxelGrid& solid, const Rounding& by) {
   VoxelGrid result = solid;
   parallel_ranges(0, solid.size().z(), 4, [&](int first, int last) {
     std::vector<float> values;
     for (int z = first; z < last; ++z) {
-      field.layer(z, values);
+      by.layer(z, values);
       RayMinima::each_voxel(solid, z, [&](int x, int y, std::size_t pixel) {
-        if (values[pixel] > minima.level(x, y, z) + kTolerance) result.set(x, y, z, false);
+        if (values[pixel] > by.minima.level(x, y, z) + kTolerance) result.set(x, y, z, false);
       });
     }
   });
@@ -129,13 +140,13 @@ float crossing(float inside, float outside, float level) {
 /// The edges between voxels that stay and voxels of the solid that do not.
 class CutEdges {
  public:
-  CutEdges(const VoxelGrid& solid, const VoxelGrid& result, const ContourField& field, const RayMinima& minima)
-      : solid_(solid), result_(result), minima_(minima), rows_(solid.size().z()) {
+  CutEdges(const VoxelGrid& solid, const VoxelGrid& result, std::span<const Rounding> steps)
+      : solid_(solid), result_(result), steps_(steps), rows_(solid.size().z()) {
     parallel_ranges(0, solid.size().z(), 8, [&](int first, int last) {
-      std::vector<float> values, before;
-      if (first > 0) field.layer(first - 1, before);
+      Values values(steps.size()), before(steps.size());
+      for (std::size_t k = 0; first > 0 && k < steps.size(); ++k) steps[k].layer(first - 1, before[k]);
       for (int z = first; z < last; ++z) {
-        field.layer(z, values);
+        for (std::size_t k = 0; k < steps.size(); ++k) steps[k].layer(z, values[k]);
         for (int y = 0; y < solid.size().y(); ++y) find(y, z, values, before);
         values.swap(before);
       }
@@ -148,38 +159,43 @@ class CutEdges {
       EdgeCrossings& all = result[axis];
       all.size = solid_.size();
       all.first = {0};
-      for (const auto& layer : rows_) {
+      for (const auto& rows : rows_) {
         const std::uint32_t begin = static_cast<std::uint32_t>(all.entries.size());
-        for (const std::uint32_t end : layer[axis].ends) all.first.push_back(begin + end);
-        all.entries.insert(all.entries.end(), layer[axis].entries.begin(), layer[axis].entries.end());
+        for (const std::uint32_t end : rows[axis].ends) all.first.push_back(begin + end);
+        all.entries.insert(all.entries.end(), rows[axis].entries.begin(), rows[axis].entries.end());
       }
     }
     return result;
   }
 
  private:
-  struct Layer {
-    std::vector<std::uint32_t> ends;  // of the rows
+  using Values = std::vector<std::vector<float>>;  // of a layer, by each step
+  struct Rows {
+    std::vector<std::uint32_t> ends;
     std::vector<EdgeCrossings::Entry> entries;
   };
 
-  void find(int y, int z, const std::vector<float>& values, const std::vector<float>& before) {
+  void find(int y, int z, const Values& values, const Values& before) {
     const int nx = solid_.size().x();
-    const float* row = &values[static_cast<std::size_t>(y) * nx];
+    const std::size_t row = static_cast<std::size_t>(y) * nx;
     for (int axis = 0; axis < 3; ++axis) {
-      Layer& layer = rows_[z][axis];
+      Rows& rows = rows_[z][axis];
       const Vec3i down = Vec3i::Unit(axis);
-      if (axis == 0 || (axis == 1 ? y : z) > 0) {
-        const float* lower = axis == 0 ? row - 1 : axis == 1 ? row - nx : &before[static_cast<std::size_t>(y) * nx];
+      if (axis == 0 || (axis == 1 ? y : z) > 0)
         each_cut(y, z, axis, [&](int x) {
           const bool inside = result_(x, y, z);  // the upper one
           const Vec3i in = inside ? Vec3i(x, y, z) : Vec3i(Vec3i(x, y, z) - down);
-          const float level = minima_.level(in.x(), in.y(), in.z());
-          const float share = inside ? crossing(row[x], lower[x], level) : crossing(lower[x], row[x], level);
-          if (share > 0) layer.entries.push_back({x, inside ? -share : share});
+          float nearest = 0;
+          for (std::size_t k = 0; k < steps_.size(); ++k) {
+            const float upper = values[k][row + x];
+            const float lower = axis == 2 ? before[k][row + x] : values[k][row + x - (axis == 0 ? 1 : nx)];
+            const float level = steps_[k].minima.level(in.x(), in.y(), in.z());
+            const float share = inside ? crossing(upper, lower, level) : crossing(lower, upper, level);
+            if (share > 0 && (nearest == 0 || share < nearest)) nearest = share;
+          }
+          if (nearest > 0) rows.entries.push_back({x, inside ? -nearest : nearest});
         });
-      }
-      layer.ends.push_back(static_cast<std::uint32_t>(layer.entries.size()));
+      rows.ends.push_back(static_cast<std::uint32_t>(rows.entries.size()));
     }
   }
 
@@ -200,8 +216,8 @@ class CutEdges {
   }
 
   const VoxelGrid &solid_, &result_;
-  const RayMinima& minima_;
-  std::vector<std::array<Layer, 3>> rows_;  // by z
+  std::span<const Rounding> steps_;
+  std::vector<std::array<Rows, 3>> rows_;  // by z
 };
 
 }  // namespace
@@ -212,10 +228,20 @@ Refinement refine_convex(const VoxelGrid& solid, const ViewSet& views, const Con
   if (options.rule == ConvexRule::as_printed) return {refine_convex_as_printed(solid, views), {}};
   const ContourField field(solid, views, options);
   if (!field.rounds()) return {solid, {}};
-  RayMinima minima(solid.size());
-  minima.find(solid, field);
-  VoxelGrid result = rounded(solid, field, minima);
-  AxisCrossings crossings = CutEdges(solid, result, field, minima).collect();
+  std::vector<Rounding> steps;
+  VoxelGrid result = solid;
+  const auto step = [&](Layer layer) {
+    RayMinima minima(result, layer, field.soften());
+    steps.push_back({std::move(layer), std::move(minima)});
+    result = rounded(result, steps.back());
+  };
+  step([&field](int z, std::vector<float>& values) { field.layer(z, values); });
+  std::optional<ScaleAxis> balls;
+  if (field.looks_grown() && options.scale > 1) {
+    balls.emplace(result, options.scale);
+    step([&balls](int z, std::vector<float>& values) { balls->layer(z, values); });
+  }
+  AxisCrossings crossings = CutEdges(solid, result, steps).collect();
   return {std::move(result), std::move(crossings)};
 }
 

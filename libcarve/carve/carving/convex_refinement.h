@@ -23,6 +23,7 @@ struct ConvexOptions {
   double evidence = 0.3;
   double bend = 0.4;
   double grown = 0.2;
+  double scale = 2;
 };
 template <class Visitor>
 void visit_fields(ConvexOptions& o, Visitor&& field) {
@@ -34,6 +35,9 @@ void visit_fields(ConvexOptions& o, Visitor&& field) {
   field("grown", o.grown, -1.0, 1.01,
         "every section is rounded where so much larger a share of corners lies between drifting outlines than between "
         "upright ones; above 1: only parts that are shown curved");
+  field("scale", o.scale, 0.0, 100.0,
+        "of such a solid edges are rounded too that are wider than twice the arc sine of 1 / scale: 60 degrees at 2; "
+        "up to 1: none");
 }
 
 struct Refinement {
@@ -51,7 +55,8 @@ struct Refinement {
 /// section; sections of `solid` that are not convex stay. Slices across all three axes are intersected.
 ///
 /// A solid whose outlines hardly ever stand upright, like an animal's, looks grown: there every section is filled by an
-/// ellipse, in the corners between two outlines that drift, as far as the sections around it are.
+/// ellipse, in the corners between two outlines that drift, as far as the sections around it are. What blunt edges that
+/// leaves are rounded by the scale axis transform (carving/scale_axis.h).
 ///
 /// The result lies inside `solid` and casts the same shadow in every view: on each ray the voxels deepest inside their
 /// sections' contours stay; in a solid that looks grown, those around them that are as deep, too.
