@@ -144,6 +144,15 @@ TEST(ScaleAxis, ASlenderConeKeepsItsTipABluntOneDoesNot) {
   EXPECT_LE(height(rounded(cone(42), 2)), height(cone(42)) - 8);
 }
 
+TEST(ScaleAxis, WhatStandsOnTheGroundKeepsItsRimThere) {
+  const VoxelGrid drum =
+      solid({100, 80, 100}, [](const Vec3& p) { return std::hypot(p.x(), p.z()) < 40 && p.y() < 30; });
+  const VoxelGrid round = rounded(drum, 2);
+  EXPECT_TRUE(round(50, 0, 11));
+  ASSERT_TRUE(drum(50, 69, 11));
+  EXPECT_FALSE(round(50, 69, 11));
+}
+
 // Half of the cells of a thin plate would be filled or none.
 TEST(ScaleAxis, WhatHasNoBallSaysNothing) {
   const VoxelGrid plate = solid({256, 3, 256}, [](const Vec3& p) { return std::abs(p.y()) < 0.6; });

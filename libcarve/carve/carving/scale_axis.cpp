@@ -144,7 +144,13 @@ ScaleAxis::ScaleAxis(const VoxelGrid& solid, double scale) : size_(solid.size())
   const std::vector<std::uint8_t> inside = filled(solid, cells, lines, width);
   std::vector<double> squared(cells.count());
   for (std::size_t i = 0; i < squared.size(); ++i) squared[i] = inside[i] ? LowerEnvelope::kNone : 0;
+  const auto each_below = [&](auto&& use) {
+    for (int z = 1; z + 1 < cells.size.z(); ++z)
+      for (int x = 1; x + 1 < cells.size.x(); ++x) use(squared[cells.index(x, 0, z)], squared[cells.index(x, 1, z)]);
+  };
+  each_below([](double& below, double above) { below = above; });
   transform(squared, cells);
+  each_below([](double& below, double) { below = 0; });
   const double largest = *std::ranges::max_element(squared);
   if (largest == 0) return;
 

@@ -8,7 +8,8 @@ namespace carve {
 /// How far a voxel lies out of the balls that make up a solid once its blunt edges are rounded: the scale axis
 /// transform \cite giesen_2009. Of all balls that lie in the solid, those stay that no other covers when all are
 /// `scale` times as large; the solid is the union of what stays. An edge vanishes that is wider than an angle whose
-/// half has the sine 1 / scale (2: 60 degrees), with the balls along it; tapers and thin parts stay.
+/// half has the sine 1 / scale (2: 60 degrees), with the balls along it; tapers and thin parts stay. What stands on the
+/// ground (y = 0 of the grid) counts as going on below it, as a bust does: its rim there is no edge.
 ///
 /// Found on a grid of its own of at most 64 cells a side, so that it costs the same whatever the solid's: the balls'
 /// radii by an exact distance transform, which of them are covered by a chamfer one \cite borgefors_1996.
