@@ -12,7 +12,7 @@
 namespace carve {
 namespace {
 
-constexpr int kMostCells = 64;  // along the longest side
+constexpr int kCells = 64;  // along the longest side, to the nearest whole width in voxels
 
 /// How voxels fall on cells `width` voxels wide that lie in their middle, so that a mirrored solid gives mirrored
 /// cells. Cells are numbered from 1: an empty one lies at either end.
@@ -137,7 +137,7 @@ std::vector<std::uint8_t> uncovered(const std::vector<double>& squared, const Ce
 }  // namespace
 
 ScaleAxis::ScaleAxis(const VoxelGrid& solid, double scale) : size_(solid.size()) {
-  const int width = std::max(1, static_cast<int>(std::lround(static_cast<double>(size_.maxCoeff()) / kMostCells)));
+  const int width = std::max(1, static_cast<int>(std::lround(static_cast<double>(size_.maxCoeff()) / kCells)));
   const std::array<Line, 3> lines{Line(size_.x(), width), Line(size_.y(), width), Line(size_.z(), width)};
   const CellGrid cells{{lines[0].cells(), lines[1].cells(), lines[2].cells()}};
   cells_ = cells.size;

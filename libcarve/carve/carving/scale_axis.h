@@ -11,11 +11,12 @@ namespace carve {
 /// half has the sine 1 / scale (2: 60 degrees), with the balls along it; tapers and thin parts stay. What stands on the
 /// ground (y = 0 of the grid) counts as going on below it, as a bust does: its rim there is no edge.
 ///
-/// Found on a grid of its own of at most 64 cells a side, so that it costs the same whatever the solid's: the balls'
-/// radii by an exact distance transform, which of them are covered by a chamfer one \cite borgefors_1996.
+/// Found on a grid of its own, some 64 cells along the longest side (less than 96), so that it costs the same whatever
+/// the solid's: the balls' radii by an exact distance transform, which of them are covered by a chamfer one
+/// \cite borgefors_1996.
 class ScaleAxis {
  public:
-  /// \param scale  at least 1: all balls stay
+  /// \param scale  1 or more; at 1 all balls stay
   ScaleAxis(const VoxelGrid& solid, double scale);
   /// The values of layer z, field[y * nx + x]: below 1 inside of a ball, above 1 outside of all; squared distances by
   /// the largest ball's radius. 0 if there is no ball.
