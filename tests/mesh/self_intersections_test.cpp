@@ -81,6 +81,31 @@ TEST_P(SelfIntersections, OfMovedVerticesAreThoseOfTheirTriangles) {
   }
 }
 
+TEST_P(SelfIntersections, OfVerticesThatMovedSinceTheGridWasMadeAreThoseOfTheirTriangles) {
+  const Mesh from = torus_mesh(24, 12), to = shaken(from, GetParam(), 0.2);
+  const TriangleGrid grid(to, from.positions);
+  std::mt19937 random(GetParam());
+  Mesh mesh = to;
+  std::size_t found = 0;
+  for (int round = 0; round < 4; ++round) {  // vertices go back, half the way or all of it
+    std::vector<std::uint8_t> moved(mesh.positions.size());
+    std::vector<int> vertices;
+    for (int v = 0; v < static_cast<int>(moved.size()); ++v) {
+      if (random() % 10 != 0) continue;
+      mesh.positions[v] = random() % 2 ? from.positions[v] : Vec3((mesh.positions[v] + from.positions[v]) / 2);
+      moved[v] = 1;
+      vertices.push_back(v);
+    }
+    const VertexTriangles around = vertex_triangles(mesh);
+    for (const bool as_floats : {false, true}) {
+      const Pairs pairs = self_intersections(mesh, around, grid, vertices, as_floats);
+      EXPECT_EQ(pairs, self_intersections(mesh, around, moved, as_floats));
+      found += pairs.size();
+    }
+  }
+  EXPECT_GT(found, 0u);
+}
+
 TEST(SelfIntersections, ByOneSharedCornerEdgeOrTriangle) {
   const std::vector<Vec3> p = {{0, 0, 0}, {1, 0, 0},     {0, 1, 0},      {0.5, 0.5, 0},
                                {1, 1, 0}, {0.2, 0.2, 1}, {0.2, 0.2, -1}, {-1, -1, 0}};

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <stdexcept>
 #include <string>
+#include <unordered_map>
 
 #include "carve/core/parallel.h"
 #include "carve/mesh/triangle_tests.h"
@@ -240,6 +241,47 @@ class Finder {
 
 Pairs near_pairs(const Mesh& mesh, const VertexTriangles& around, std::span<const std::uint8_t> moved, double blur) {
   return Finder(mesh, around, moved, blur).pairs();
+}
+
+Pairs near_pairs(const Mesh& mesh, const VertexTriangles& around, const TriangleGrid& grid,
+                 std::span<const int> vertices, double blur) {
+  std::vector<int> moved;
+  for (const int v : vertices) moved.insert(moved.end(), around[v].begin(), around[v].end());
+  std::ranges::sort(moved);
+  moved.erase(std::ranges::unique(moved).begin(), moved.end());
+
+  std::unordered_map<int, bool> plain;  // of the vertices asked for
+  const auto side_by_side = [&](const Triangle& a, const Triangle& b) {
+    return std::ranges::any_of(a, [&](int v) {
+      if (v != b[0] && v != b[1] && v != b[2]) return false;
+      const auto [found, fresh] = plain.try_emplace(v, false);
+      if (fresh) found->second = is_plain(mesh, around[v], v, blur);
+      return found->second;
+    });
+  };
+  const auto low = [&](const Triangle& t) {
+    return Vec3(mesh.positions[t[0]].cwiseMin(mesh.positions[t[1]]).cwiseMin(mesh.positions[t[2]]));
+  };
+  const auto high = [&](const Triangle& t) {
+    return Vec3(mesh.positions[t[0]].cwiseMax(mesh.positions[t[1]]).cwiseMax(mesh.positions[t[2]]));
+  };
+  Pairs found;
+  for (const int t : moved) {
+    const Triangle& a = mesh.triangles[t];
+    const Vec3 least = low(a).array() - 2 * blur, most = high(a).array() + 2 * blur;
+    std::vector<int> others;
+    grid.each_near(least, most, [&](int other) { others.push_back(other); });
+    std::ranges::sort(others);
+    others.erase(std::ranges::unique(others).begin(), others.end());
+    for (const int other : others) {
+      const Triangle& b = mesh.triangles[other];
+      if (other == t || (low(b).array() > most.array()).any() || (high(b).array() < least.array()).any()) continue;
+      if (!side_by_side(a, b) && !are_apart(mesh, t, other, blur)) found.push_back(std::minmax(t, other));
+    }
+  }
+  std::ranges::sort(found);
+  found.erase(std::ranges::unique(found).begin(), found.end());
+  return found;
 }
 
 }  // namespace carve

@@ -6,6 +6,7 @@
 
 #include "carve/mesh/adjacency.h"
 #include "carve/mesh/mesh.h"
+#include "carve/mesh/triangle_grid.h"
 
 namespace carve {
 
@@ -17,5 +18,10 @@ namespace carve {
 /// \throws std::invalid_argument: a coordinate beyond 1e100
 std::vector<std::pair<int, int>> near_pairs(const Mesh& mesh, const VertexTriangles& around,
                                             std::span<const std::uint8_t> moved = {}, double blur = 0);
+
+/// Only pairs with a triangle around one of `vertices`, in time that depends on how many these are.
+/// \param grid  of a mesh whose vertices moved to where they are now
+std::vector<std::pair<int, int>> near_pairs(const Mesh& mesh, const VertexTriangles& around, const TriangleGrid& grid,
+                                            std::span<const int> vertices, double blur = 0);
 
 }  // namespace carve

@@ -62,19 +62,16 @@ class Exactly {
   const bool as_floats_;
 };
 
-}  // namespace
-
-std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh) {
-  return self_intersections(mesh, vertex_triangles(mesh));
-}
-
-std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const VertexTriangles& around,
-                                                    std::span<const std::uint8_t> moved, bool as_floats) {
+/// By how much rounding to floats may move a coordinate.
+double blur(const Mesh& mesh, bool as_floats) {
   double largest = 0;
   if (as_floats)
     for (const Vec3& p : mesh.positions) largest = std::max(largest, p.cwiseAbs().maxCoeff());
-  std::vector<std::pair<int, int>> pairs =
-      near_pairs(mesh, around, moved, largest * std::numeric_limits<float>::epsilon());
+  return largest * std::numeric_limits<float>::epsilon();
+}
+
+std::vector<std::pair<int, int>> those_that_meet(const Mesh& mesh, std::vector<std::pair<int, int>> pairs,
+                                                 bool as_floats) {
   const Exactly exactly(mesh), as_written(mesh, true);
   std::vector<std::uint8_t> meeting(pairs.size());
   parallel_ranges(0, static_cast<int>(pairs.size()), 256, [&](int first, int last) {
@@ -88,6 +85,23 @@ std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const Vert
     if (meeting[i]) pairs[kept++] = pairs[i];
   pairs.resize(kept);
   return pairs;
+}
+
+}  // namespace
+
+std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh) {
+  return self_intersections(mesh, vertex_triangles(mesh));
+}
+
+std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const VertexTriangles& around,
+                                                    std::span<const std::uint8_t> moved, bool as_floats) {
+  return those_that_meet(mesh, near_pairs(mesh, around, moved, blur(mesh, as_floats)), as_floats);
+}
+
+std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const VertexTriangles& around,
+                                                    const TriangleGrid& grid, std::span<const int> vertices,
+                                                    bool as_floats) {
+  return those_that_meet(mesh, near_pairs(mesh, around, grid, vertices, blur(mesh, as_floats)), as_floats);
 }
 
 std::vector<std::pair<int, int>> contacts(const Mesh& mesh, std::span<const std::pair<int, int>> meeting) {

@@ -6,6 +6,7 @@
 
 #include "carve/mesh/adjacency.h"
 #include "carve/mesh/mesh.h"
+#include "carve/mesh/triangle_grid.h"
 
 namespace carve {
 
@@ -20,6 +21,12 @@ std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh);
 /// \param as_floats  also those that meet once coordinates are rounded to floats, as GLB and STL files hold them
 std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const VertexTriangles& around,
                                                     std::span<const std::uint8_t> moved = {}, bool as_floats = false);
+
+/// Only the pairs with a triangle around one of `vertices`, in time that depends on how many these are.
+/// \param grid  of the mesh, from before vertices moved to where they are now
+std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const VertexTriangles& around,
+                                                    const TriangleGrid& grid, std::span<const int> vertices,
+                                                    bool as_floats = false);
 
 /// Those of the pairs that are mere contact: triangles without a common vertex that have a single point in common.
 /// Surfaces that pass through each other have whole lines in common in some pair.

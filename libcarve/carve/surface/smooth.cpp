@@ -147,17 +147,22 @@ void mend(Mesh& mesh, const std::vector<Vec3>& before, const VertexTriangles& ar
       if (!moved[v]) mesh.positions[v] = before[v];
     }
   });
-  for (bool again = true; again;) {
-    again = false;
-    const auto meeting = self_intersections(mesh, around, moved, true);
-    std::fill(moved.begin(), moved.end(), 0);
+  auto meeting = self_intersections(mesh, around, moved, true);
+  if (meeting.empty()) return;
+  std::ranges::fill(moved, 0);
+  // From here on few vertices move, but often one after the other along a thin sheet.
+  const TriangleGrid grid(mesh, before);
+  for (std::vector<int> back; !meeting.empty(); back.clear()) {
     for (const auto& [i, j] : meeting)
       for (const int t : {i, j})
         for (const int v : mesh.triangles[t])
           if (!moved[v] && mesh.positions[v] != before[v]) {
             mesh.positions[v] = tries[v]++ ? before[v] : Vec3((mesh.positions[v] + before[v]) / 2);
-            moved[v] = again = true;
+            moved[v] = 1;
+            back.push_back(v);
           }
+    meeting = self_intersections(mesh, around, grid, back, true);
+    for (const int v : back) moved[v] = 0;
   }
 }
 
