@@ -25,6 +25,17 @@ constexpr float kClearance = 0.02f;  // voxels between a crossing and the centre
 /// How far out voxels lie: 1 on the rounded surface. Layer z: values[y * nx + x].
 using Layer = std::function<void(int z, std::vector<float>& values)>;
 
+/// The same layer by layer, or worked out once where that takes little memory: it is asked three times.
+Layer remembered(Layer layer, const Vec3i& size) {
+  constexpr std::size_t kMost = std::size_t{1} << 24;  // voxels, of 4 bytes
+  if (static_cast<std::size_t>(size.x()) * size.y() * size.z() > kMost) return layer;
+  std::vector<std::vector<float>> layers(size.z());
+  parallel_ranges(0, size.z(), 4, [&](int first, int last) {
+    for (int z = first; z < last; ++z) layer(z, layers[z]);
+  });
+  return [layers = std::move(layers)](int z, std::vector<float>& values) { values = layers[z]; };
+}
+
 /// The least value on the rays of each view: voxels up to it stay, so that every shadow does.
 class RayMinima {
  public:
@@ -230,7 +241,8 @@ Refinement refine_convex(const VoxelGrid& solid, const ViewSet& views, const Con
   if (!field.rounds()) return {solid, {}};
   std::vector<Rounding> steps;
   VoxelGrid result = solid;
-  const auto step = [&](Layer layer) {
+  const auto step = [&](Layer from) {
+    Layer layer = remembered(std::move(from), solid.size());
     RayMinima minima(result, layer, field.soften());
     steps.push_back({std::move(layer), std::move(minima)});
     result = rounded(result, steps.back());

@@ -13,13 +13,6 @@ constexpr int kSteepestExponent = 40;  // from here on a superellipse is a recta
 constexpr int kFewestSlices = 12;      // of a part: fewer do not tell a curve from a line
 constexpr float kSlope = 0.4f;         // voxels a slice: an outline that certainly is not upright
 
-float power(float base, int exponent) {
-  float result = 1;
-  for (; exponent; exponent >>= 1, base *= base)
-    if (exponent & 1) result *= base;
-  return result;
-}
-
 /// Slices over which an outline's direction is measured.
 int window(int longest) { return std::max(2, (longest + 16) / 32); }
 
@@ -185,10 +178,6 @@ double grown(std::span<const Sections> cuts, std::span<const std::vector<Drift>>
       }
     }
   return area > 0 ? (drifting - standing) / area : 0;
-}
-
-float way_out(int index, float low, float high, int exponent) {
-  return power(std::abs((2 * index + 1 - low - high) / (high - low)), exponent);
 }
 
 double superellipse_fill(double exponent) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -16,7 +17,12 @@ inline constexpr std::uint8_t kAllCorners = 15;
 
 /// |distance of a voxel's centre from the middle / half the way to the ends| ^ exponent; the sum of both axes' is below
 /// 1 inside the superellipse.
-float way_out(int index, float low, float high, int exponent);
+inline float way_out(int index, float low, float high, int exponent) {
+  float base = std::abs((2 * index + 1 - low - high) / (high - low)), result = 1;
+  for (; exponent; exponent >>= 1, base *= base)
+    if (exponent & 1) result *= base;
+  return result;
+}
 
 /// The share of its box that the superellipse |u|^exponent + |v|^exponent = 1 fills.
 double superellipse_fill(double exponent);
