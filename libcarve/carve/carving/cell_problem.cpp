@@ -73,7 +73,6 @@ CellProblem::CellProblem(const Cells& cells, std::span<const RegionMap> views, c
   auto costs = std::make_shared<Costs>();
   costs->jumps = jump_costs(cells.size.maxCoeff(), side, weights);
   std::vector<std::pair<int, PixelPair>> pairs;  // by group
-  std::vector<std::pair<int, int>> groups_of;    // by class
   for (int v = 0; v < static_cast<int>(views.size()); ++v) {
     const RegionMap& view = views[v];
     const Rays& rays = cells.rays[v];
@@ -95,11 +94,7 @@ CellProblem::CellProblem(const Cells& cells, std::span<const RegionMap> views, c
         const auto [found, fresh] =
             group_of.emplace(static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint32_t>(b), groups_.size());
         group = found->second;
-        if (fresh) {
-          groups_.push_back({a, b});
-          groups_of.emplace_back(a, group);
-          if (a != b) groups_of.emplace_back(b, group);
-        }
+        if (fresh) groups_.push_back({a, b});
       }
       pairs.push_back({group, {depths_at(p), depths_at(q), border}});
     };
@@ -115,7 +110,6 @@ CellProblem::CellProblem(const Cells& cells, std::span<const RegionMap> views, c
   for (int k = 0; k < static_cast<int>(classes_.size()); ++k)
     for (int n = 0; n < classes_[k].length; ++n) members.push_back({order_[classes_[k].begin + n], {k, n}});
   members_ = {cells.count, members};
-  groups_of_ = {static_cast<int>(classes_.size()), groups_of};
 
   std::vector<std::pair<int, Contact>> touching;
   for (const CellContact& c : contacts(cells)) {
@@ -131,11 +125,12 @@ CellProblem::CellProblem(const Cells& cells, std::span<const RegionMap> views, c
   const Lists<PixelPair> pairs_of(static_cast<int>(groups_.size()), pairs);
   for (std::size_t g = 0; g < groups_.size(); ++g) tabulate(groups_[g], pairs_of[static_cast<int>(g)], *costs);
   costs_ = std::move(costs);
+  drop_free_groups();
   first_.assign(classes_.size(), 0);  // all is kept
   was_ = first_;
   for (const Class& c : classes_) set_open(c, 0, 1, 1);
   for (Group& g : groups_) {
-    g.value = value_of(g);
+    g.value = value_of(g, first_[g.a], first_[g.b]);
     strokes_ += g.value.stroke, jumps_ += g.value.jump;
   }
   energy_ += misfit();
@@ -231,8 +226,26 @@ void CellProblem::tabulate(Group& group, std::span<const PixelPair> pairs, Costs
   }
 }
 
-CellProblem::Pay CellProblem::value_of(const Group& g) const {
-  const int a = first_[g.a], b = first_[g.b];
+/// Within most classes pixels never pay anything: neighbours that see the same cell see it about as deep.
+void CellProblem::drop_free_groups() {
+  std::erase_if(groups_, [&](Group& group) {
+    if (group.a != group.b) return false;
+    for (int k = 0; k < classes_[group.a].length; ++k) {
+      const Pay pay = value_of(group, k, k);
+      if (pay.stroke != 0 || pay.jump != 0) return false;
+    }
+    return true;
+  });
+  std::vector<std::pair<int, int>> groups_of;
+  for (int g = 0; g < static_cast<int>(groups_.size()); ++g) {
+    groups_of.emplace_back(groups_[g].a, g);
+    if (groups_[g].a != groups_[g].b) groups_of.emplace_back(groups_[g].b, g);
+  }
+  groups_of_ = {static_cast<int>(classes_.size()), groups_of};
+}
+
+/// If its pixels see the a-th and the b-th cell of their rays.
+CellProblem::Pay CellProblem::value_of(const Group& g, int a, int b) const {
   if (g.columns > 0) return costs_->tables[g.begin + a * g.columns + (g.a == g.b ? 0 : b)];
   Pay sum;
   for (int k = g.begin; k < g.begin + g.pairs; ++k) {
@@ -308,7 +321,7 @@ std::int64_t CellProblem::flip(std::span<const int> cells) {
       group_mark_[g] = stamp_;
       ++looks;
       Group& group = groups_[g];
-      const Pay value = value_of(group);
+      const Pay value = value_of(group, first_[group.a], first_[group.b]);
       strokes += value.stroke - group.value.stroke;
       jumps += value.jump - group.value.jump;
       group.value = value;

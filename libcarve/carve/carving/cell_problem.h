@@ -137,7 +137,8 @@ class CellProblem {
   std::int64_t own_cost(int cell) const;
   void set_open(const Class& c, int from, int to, int sign);
   void tabulate(Group& group, std::span<const PixelPair> pairs, Costs& costs) const;
-  Pay value_of(const Group& g) const;
+  void drop_free_groups();
+  Pay value_of(const Group& g, int a, int b) const;
 
   std::vector<std::uint8_t> keep_;
   std::vector<int> order_;

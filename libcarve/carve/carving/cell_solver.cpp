@@ -83,11 +83,13 @@ class Search {
   SearchEnd run() {
     const std::vector<std::uint8_t> start = state();
     descend();
-    if (enough_to_anneal())
+    if (enough_to_anneal()) {
       anneal();
-    else if (2 * spent() < limit_)
+      descend();
+    } else if (2 * spent() < limit_) {
       start_again(start);
-    descend();
+      descend();
+    }
     return {nodes_, !late_, looked_at_all_};
   }
 

@@ -185,7 +185,7 @@ Carved two_level(const Input& in) {
 /// The search; where it was cut short before it looked at all cells, one pass if that ends lower.
 Carved solver(const Input& in) {
   return by_cells(in, [&](const Cut& cut, const Choice* first) {
-    constexpr int kShorter = 12;  // a search that begins where another ended
+    constexpr int kShorter = 8;  // a search that begins where another ended
     Choice choice{begun(cut, first), Consistency::solver, 0};
     SearchLimit limit = in.limit;
     if (first) limit.nodes /= kShorter;
