@@ -52,17 +52,18 @@ std::vector<int> mirror_images(const Cells& cells) {
 
 }  // namespace
 
-std::array<std::vector<CellProblem::Pay>, 5> CellProblem::jump_costs(int resolution, double side,
-                                                                     const CellWeights& weights) {
+std::vector<CellProblem::Pay> CellProblem::jump_costs(int longest, double side, const CellWeights& weights) {
   // In the order of Border.
   const double stroke[] = {0, 0, 1, weights.open, 0}, jump[] = {weights.unexplained, 0, 0, 0, weights.colour};
-  std::array<std::vector<Pay>, 5> out;
-  for (std::size_t b = 0; b < out.size(); ++b)
-    for (int depth = 0; depth < resolution; ++depth) {
-      const double size = static_cast<double>(depth) / resolution;
-      out[b].push_back({static_cast<std::int32_t>(std::lround(side * stroke[b] * (1 - kStrokeJump(size)))),
-                        static_cast<std::int32_t>(std::lround(side * jump[b] * kUnexplainedJump(size)))});
+  std::vector<Pay> out;
+  for (std::size_t b = 0; b < std::size(stroke); ++b) {
+    for (int depth = 0; depth < longest; ++depth) {
+      const double size = static_cast<double>(depth) / longest;
+      out.push_back({static_cast<std::int32_t>(std::lround(side * stroke[b] * (1 - kStrokeJump(size)))),
+                     static_cast<std::int32_t>(std::lround(side * jump[b] * kUnexplainedJump(size)))});
     }
+    out.emplace_back();
+  }
   return out;
 }
 
@@ -71,7 +72,8 @@ CellProblem::CellProblem(const Cells& cells, std::span<const RegionMap> views, c
   const double side = kUnit * 128 / cells.size.maxCoeff(), face = side * side / kUnit, voxel = face * side / kUnit;
   buried_ = voxel * weights.buried;
   auto costs = std::make_shared<Costs>();
-  costs->jumps = jump_costs(cells.size.maxCoeff(), side, weights);
+  costs->longest = cells.size.maxCoeff();
+  costs->jumps = jump_costs(costs->longest, side, weights);
   std::vector<std::pair<int, PixelPair>> pairs;  // by group
   for (int v = 0; v < static_cast<int>(views.size()); ++v) {
     const RegionMap& view = views[v];
@@ -135,7 +137,6 @@ CellProblem::CellProblem(const Cells& cells, std::span<const RegionMap> views, c
   }
   energy_ += misfit();
   class_mark_.assign(classes_.size(), 0);
-  group_mark_.assign(groups_.size(), 0);
   touch_mark_.assign(cells.count, 0);
   clash_ = clashes(cells, views, face * weights.agreement);
   for (const auto& clash : clash_) clashes_.push_back(std::ranges::any_of(clash, [](auto cost) { return cost != 0; }));
@@ -317,10 +318,9 @@ std::int64_t CellProblem::flip(std::span<const int> cells) {
   std::int64_t strokes = 0, jumps = 0, looks = 0;
   for (const int k : changed_)
     for (const int g : groups_of_[k]) {
-      if (group_mark_[g] == stamp_) continue;
-      group_mark_[g] = stamp_;
-      ++looks;
       Group& group = groups_[g];
+      if (group.a != k && class_mark_[group.a] == stamp_) continue;  // it is looked at as one of that class
+      ++looks;
       const Pay value = value_of(group, first_[group.a], first_[group.b]);
       strokes += value.stroke - group.value.stroke;
       jumps += value.jump - group.value.jump;

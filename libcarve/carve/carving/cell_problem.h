@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cstdlib>
 #include <memory>
 #include <numeric>
 #include <span>
@@ -105,14 +106,16 @@ class CellProblem {
   };
   /// What pairs of neighbouring pixels pay.
   struct Costs {
-    std::array<std::vector<Pay>, 5> jumps;  // by Border and depth jump in voxels
-    std::vector<std::int16_t> depths;       // along each pixel's ray; -1 ends it
+    int longest = 0;                   // a depth jump in voxels that there cannot be
+    std::vector<Pay> jumps;            // by Border and depth jump; the longest stands for a ray that meets nothing
+    std::vector<std::int16_t> depths;  // along each pixel's ray; -1 ends it
     std::vector<PixelPair> pairs;
     std::vector<Pay> tables;
     /// If the pixels see the k-th and the l-th cell of their rays.
     Pay of(const PixelPair& pair, int k, int l) const {
       const int a = depths[pair.a + k], b = depths[pair.b + l];
-      return a < 0 || b < 0 ? Pay{} : jumps[static_cast<int>(pair.border)][a < b ? b - a : a - b];
+      const int jump = (a | b) < 0 ? longest : std::abs(a - b);
+      return jumps[static_cast<int>(pair.border) * (longest + 1) + jump];
     }
   };
   /// All neighbouring pixels of two classes.
@@ -130,7 +133,7 @@ class CellProblem {
   struct Sight {
     std::int64_t pixels = 0, open = 0;  // rays that meet the cell; those that meet nothing before it
   };
-  static std::array<std::vector<Pay>, 5> jump_costs(int resolution, double side, const CellWeights& weights);
+  static std::vector<Pay> jump_costs(int longest, double side, const CellWeights& weights);
   std::vector<int> add_classes(const Rays& rays, int view, std::int64_t empty);
   int first_of(const Class& c, int from) const;
   void move_first(int ray, int position);
@@ -159,7 +162,7 @@ class CellProblem {
   std::vector<int> mirror_;
   double symmetry_ = 0;
   std::vector<int> touched_, touch_mark_;
-  std::vector<int> changed_, class_mark_, group_mark_;
+  std::vector<int> changed_, class_mark_;
   int stamp_ = 0;
   std::int64_t energy_ = 0, strokes_ = 0, jumps_ = 0, uncovered_ = 0, looks_ = 0;
 };
