@@ -31,7 +31,7 @@ void restore_unexplained(CellProblem& problem);
 
 /// Lowers the problem's energy from where it stands: descends over the columns of cells behind each region, single
 /// cells and cells with all that hides them in two views; anneals \cite kirkpatrick_1983 if what is left of the limit
-/// is enough for that, else starts again from drop_in_one_pass() if half of it is left; descends again.
+/// is enough for that, else starts again from drop_in_one_pass() if half of it is left; after either descends again.
 SearchEnd search_cells(CellProblem& problem, const Cells& cells, const SearchLimit& limit);
 
 }  // namespace carve

@@ -43,7 +43,7 @@ void visit_fields(ConsistencyOptions& o, Visitor&& field) {
   visit_fields(o.weights, field);
   field("nodes", o.nodes, 0, 100000000,
         "most choices the solver looks at before it takes the best so far, those that many rays see counting for "
-        "several; the vote's other two grids get a twelfth each");
+        "several; the vote's other two grids get an eighth each");
   field("seconds", o.seconds, 0.0, 1e6,
         "the same in seconds; auto: no such limit. With one, results depend on the machine");
   field("alternatives", o.alternatives, 0, 100000000,
