@@ -23,6 +23,13 @@ constexpr std::uint8_t kPlain = 1 << 6;  // of Box::is, above the six directions
 
 using Pairs = std::vector<std::pair<int, int>>;
 
+/// Each item once, in rising order.
+template <class T>
+void sort_once(std::vector<T>& items) {
+  std::sort(items.begin(), items.end());
+  items.erase(std::unique(items.begin(), items.end()), items.end());
+}
+
 struct Box {
   std::array<float, 3> low, high;
   int triangle;
@@ -89,8 +96,7 @@ class Finder {
       const std::scoped_lock hold(lock);
       all.insert(all.end(), found.begin(), found.end());
     });
-    std::sort(all.begin(), all.end());
-    all.erase(std::unique(all.begin(), all.end()), all.end());  // boxes that reach into several parts
+    sort_once(all);  // boxes that reach into several parts
     return all;
   }
 
@@ -247,8 +253,7 @@ Pairs near_pairs(const Mesh& mesh, const VertexTriangles& around, const Triangle
                  std::span<const int> vertices, double blur) {
   std::vector<int> moved;
   for (const int v : vertices) moved.insert(moved.end(), around[v].begin(), around[v].end());
-  std::ranges::sort(moved);
-  moved.erase(std::ranges::unique(moved).begin(), moved.end());
+  sort_once(moved);
 
   std::unordered_map<int, bool> plain;  // of the vertices asked for
   const auto side_by_side = [&](const Triangle& a, const Triangle& b) {
@@ -271,16 +276,14 @@ Pairs near_pairs(const Mesh& mesh, const VertexTriangles& around, const Triangle
     const Vec3 least = low(a).array() - 2 * blur, most = high(a).array() + 2 * blur;
     std::vector<int> others;
     grid.each_near(least, most, [&](int other) { others.push_back(other); });
-    std::ranges::sort(others);
-    others.erase(std::ranges::unique(others).begin(), others.end());
+    sort_once(others);
     for (const int other : others) {
       const Triangle& b = mesh.triangles[other];
       if (other == t || (low(b).array() > most.array()).any() || (high(b).array() < least.array()).any()) continue;
       if (!side_by_side(a, b) && !are_apart(mesh, t, other, blur)) found.push_back(std::minmax(t, other));
     }
   }
-  std::ranges::sort(found);
-  found.erase(std::ranges::unique(found).begin(), found.end());
+  sort_once(found);
   return found;
 }
 
