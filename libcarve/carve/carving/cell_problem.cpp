@@ -128,6 +128,12 @@ CellProblem::CellProblem(const Cells& cells, std::span<const RegionMap> views, c
   for (std::size_t g = 0; g < groups_.size(); ++g) tabulate(groups_[g], pairs_of[static_cast<int>(g)], *costs);
   costs_ = std::move(costs);
   drop_free_groups();
+  std::vector<std::pair<int, int>> groups_of;  // by class
+  for (int g = 0; g < static_cast<int>(groups_.size()); ++g) {
+    groups_of.emplace_back(groups_[g].a, g);
+    if (groups_[g].a != groups_[g].b) groups_of.emplace_back(groups_[g].b, g);
+  }
+  groups_of_ = {static_cast<int>(classes_.size()), groups_of};
   first_.assign(classes_.size(), 0);  // all is kept
   was_ = first_;
   for (const Class& c : classes_) set_open(c, 0, 1, 1);
@@ -229,7 +235,7 @@ void CellProblem::tabulate(Group& group, std::span<const PixelPair> pairs, Costs
 
 /// Within most classes pixels never pay anything: neighbours that see the same cell see it about as deep.
 void CellProblem::drop_free_groups() {
-  std::erase_if(groups_, [&](Group& group) {
+  std::erase_if(groups_, [&](const Group& group) {
     if (group.a != group.b) return false;
     for (int k = 0; k < classes_[group.a].length; ++k) {
       const Pay pay = value_of(group, k, k);
@@ -237,12 +243,6 @@ void CellProblem::drop_free_groups() {
     }
     return true;
   });
-  std::vector<std::pair<int, int>> groups_of;
-  for (int g = 0; g < static_cast<int>(groups_.size()); ++g) {
-    groups_of.emplace_back(groups_[g].a, g);
-    if (groups_[g].a != groups_[g].b) groups_of.emplace_back(groups_[g].b, g);
-  }
-  groups_of_ = {static_cast<int>(classes_.size()), groups_of};
 }
 
 /// If its pixels see the a-th and the b-th cell of their rays.

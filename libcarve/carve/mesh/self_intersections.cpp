@@ -63,12 +63,7 @@ class Exactly {
 };
 
 /// By how much rounding to floats may move a coordinate.
-double blur(const Mesh& mesh, bool as_floats) {
-  double largest = 0;
-  if (as_floats)
-    for (const Vec3& p : mesh.positions) largest = std::max(largest, p.cwiseAbs().maxCoeff());
-  return largest * std::numeric_limits<float>::epsilon();
-}
+double blur(double largest) { return largest * std::numeric_limits<float>::epsilon(); }
 
 std::vector<std::pair<int, int>> those_that_meet(const Mesh& mesh, std::vector<std::pair<int, int>> pairs,
                                                  bool as_floats) {
@@ -95,13 +90,17 @@ std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh) {
 
 std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const VertexTriangles& around,
                                                     std::span<const std::uint8_t> moved, bool as_floats) {
-  return those_that_meet(mesh, near_pairs(mesh, around, moved, blur(mesh, as_floats)), as_floats);
+  double largest = 0;
+  if (as_floats)
+    for (const Vec3& p : mesh.positions) largest = std::max(largest, p.cwiseAbs().maxCoeff());
+  return those_that_meet(mesh, near_pairs(mesh, around, moved, blur(largest)), as_floats);
 }
 
 std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const VertexTriangles& around,
                                                     const TriangleGrid& grid, std::span<const int> vertices,
                                                     bool as_floats) {
-  return those_that_meet(mesh, near_pairs(mesh, around, grid, vertices, blur(mesh, as_floats)), as_floats);
+  return those_that_meet(mesh, near_pairs(mesh, around, grid, vertices, as_floats ? blur(grid.largest()) : 0),
+                         as_floats);
 }
 
 std::vector<std::pair<int, int>> contacts(const Mesh& mesh, std::span<const std::pair<int, int>> meeting) {

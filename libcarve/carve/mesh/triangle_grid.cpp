@@ -14,7 +14,9 @@ TriangleGrid::TriangleGrid(const Mesh& mesh, std::span<const Vec3> other) {
   Vec3 high = -low_;
   for (const std::span<const Vec3> positions : {std::span<const Vec3>(mesh.positions), other})
     for (const Vec3& p : positions) low_ = low_.cwiseMin(p), high = high.cwiseMax(p);
-  const double longest = other.empty() ? 0 : (high - low_).maxCoeff();
+  if (other.empty()) low_ = high = Vec3::Zero();
+  const double longest = (high - low_).maxCoeff();
+  largest_ = std::max(-low_.minCoeff(), high.maxCoeff());
   cells_per_unit_ = longest > 1e-100 ? side_ / longest : 0;
 
   std::vector<CellBox> of_vertex;

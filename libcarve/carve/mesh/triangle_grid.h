@@ -12,8 +12,11 @@ namespace carve {
 /// the others. Vertices may move, each within the box that its position and another one span.
 class TriangleGrid {
  public:
-  /// \param mesh  whose positions are at one end \param other  of each vertex, at the other
+  /// \param mesh  whose positions are at one end \param other  one a vertex, at the other
   TriangleGrid(const Mesh& mesh, std::span<const Vec3> other);
+
+  /// The largest coordinate there may be, without its sign.
+  double largest() const { return largest_; }
 
   /// Calls use(t) for each triangle that shares a cell with a box, once a cell.
   template <class Use>
@@ -37,7 +40,7 @@ class TriangleGrid {
 
   int side_ = 1;
   Vec3 low_ = Vec3::Zero();
-  double cells_per_unit_ = 0;
+  double cells_per_unit_ = 0, largest_ = 0;
   std::vector<std::uint32_t> first_;  // of each cell; one more at the end
   std::vector<int> triangles_;
 };
