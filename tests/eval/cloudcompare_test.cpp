@@ -5,6 +5,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "carve/core/as_floats.h"
 #include "carve/mesh/mesh_io.h"
 #include "eval/compare.h"
 #include "eval/meshes.h"
@@ -37,7 +38,7 @@ Figures figures_of(const std::vector<double>& distances) {
 }
 
 Mesh in_floats(Mesh mesh) {
-  for (Vec3& p : mesh.positions) p = p.cast<float>().cast<double>();
+  for (Vec3& p : mesh.positions) p = as_floats(p);
   return mesh;
 }
 

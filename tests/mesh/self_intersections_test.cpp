@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <random>
 
+#include "carve/core/as_floats.h"
 #include "carve/core/parallel.h"
 #include "eval/meshes.h"
 #include "mesh/solids.h"
@@ -116,6 +117,23 @@ TEST(SelfIntersections, ByOneSharedCornerEdgeOrTriangle) {
   EXPECT_EQ(self_intersections({p, {{0, 1, 2}, {2, 1, 0}}}), (Pairs{{0, 1}}));  // back to back
   EXPECT_EQ(self_intersections({p, {{0, 1, 2}, {3, 4, 5}}}), (Pairs{{0, 1}}));  // a corner touches a side
   EXPECT_EQ(self_intersections({p, {{0, 1, 2}, {5, 6, 4}, {0, 0, 5}}}), (Pairs{{0, 1}}));  // no area: left out
+}
+
+TEST(SelfIntersections, OfTrianglesThatFoldOnceRoundedToFloatsAreFoundIfAskedFor) {
+  const double x = 0.20512268133461475;  // the first corner lies off the others' plane by less than a float can say
+  const Mesh mesh{{{x + 6e-17, 0.597578125, -0.2144015221},
+                   {x, 0.5975379774, -0.2145832290},
+                   {x, 0.5988335503, -0.2080129295},
+                   {x, 0.597578125, -0.2038520515}},
+                  {{0, 1, 2}, {0, 2, 3}}};
+  ASSERT_NE(mesh.positions[0].x(), x);
+  const VertexTriangles around = vertex_triangles(mesh);
+  EXPECT_EQ(self_intersections(mesh), Pairs{});
+  EXPECT_EQ(self_intersections(mesh, around, {}, true), (Pairs{{0, 1}}));
+  Mesh written = mesh;
+  for (Vec3& p : written.positions) p = as_floats(p);
+  EXPECT_EQ(written.positions[0].x(), written.positions[1].x());
+  EXPECT_EQ(self_intersections(written), (Pairs{{0, 1}}));
 }
 
 TEST(SelfIntersections, OfOnePointAreContacts) {

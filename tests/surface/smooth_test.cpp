@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "carve/carving/carve_silhouettes.h"
+#include "carve/core/as_floats.h"
 #include "carve/core/error.h"
 #include "carve/core/parallel.h"
 #include "carve/mesh/adjacency.h"
@@ -201,10 +202,10 @@ bool expect_no_passing_through_itself(const Guided& hull, const std::string& wha
   const std::size_t meeting = self_intersections(torn, vertex_triangles(torn), {}, true).size();
   const Mesh mended = smooth(hull.mesh, {}, {}, hull.guides);
   EXPECT_EQ(self_intersections(mended).size(), 0u) << what << ", " << meeting << " if not mended";
-  Mesh as_floats = mended;
-  for (Vec3& p : as_floats.positions) p = p.cast<float>().cast<double>();
-  EXPECT_EQ(self_intersections(as_floats).size(), 0u) << what;
-  EXPECT_EQ(topology(as_floats).degenerate_triangles, 0) << what;
+  Mesh written = mended;
+  for (Vec3& p : written.positions) p = as_floats(p);
+  EXPECT_EQ(self_intersections(written).size(), 0u) << what;
+  EXPECT_EQ(topology(written).degenerate_triangles, 0) << what;
   std::size_t moved = 0;
   for (std::size_t v = 0; v < torn.positions.size(); ++v)
     moved += !mended.positions[v].isApprox(torn.positions[v], 1e-9);

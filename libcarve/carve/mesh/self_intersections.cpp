@@ -9,6 +9,7 @@
 #include <array>
 #include <limits>
 
+#include "carve/core/as_floats.h"
 #include "carve/core/parallel.h"
 #include "carve/mesh/near_pairs.h"
 
@@ -46,8 +47,7 @@ class Exactly {
 
  private:
   Point point(int v) const {
-    const Vec3& p = mesh_.positions[v];
-    if (as_floats_) return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
+    const Vec3 p = as_floats_ ? as_floats(mesh_.positions[v]) : mesh_.positions[v];
     return {p.x(), p.y(), p.z()};
   }
   Kernel::Triangle_3 shape(const Triangle& t) const { return {point(t[0]), point(t[1]), point(t[2])}; }
