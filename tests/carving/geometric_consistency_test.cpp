@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include <numeric>
+#include <map>
 #include <random>
 #include <set>
 
@@ -242,7 +242,7 @@ TEST_P(ConsistencyTest, WhatTwoOfThreeGridsDropIsDropped) {
   EXPECT_EQ(carved(32, true), most);
 }
 
-TEST_P(ConsistencyTest, ACellIsPartOfTheOneItSharesMostSpaceWithOnAnotherGrid) {
+TEST_P(ConsistencyTest, SpaceThatCellsOfTwoGridsShareIsCountedVoxelByVoxel) {
   const ViewSet views = views_of(random_pockets(GetParam()), kThreeViews);
   const auto cut = [&](const VoxelGrid& hull) {
     std::vector<RegionMap> regions;
@@ -252,18 +252,42 @@ TEST_P(ConsistencyTest, ACellIsPartOfTheOneItSharesMostSpaceWithOnAnotherGrid) {
   const VoxelGrid coarse = carve_silhouettes(views, {.grid = 30}).grid,
                   fine = carve_silhouettes(views, {.grid = 75}).grid;
   const Cells other = cut(coarse), own = cut(fine);
-  const std::vector<int> found = counterparts(own, fine, other, coarse);
-  std::vector<std::int64_t> volume(other.count, 0);
-  for (int c = 0; c < own.count; ++c)
-    if (found[c] >= 0) volume[found[c]] += own.volume[c];
-  for (int c = 0; c < other.count; ++c)
-    if (other.volume[c] > 500) {
-      EXPECT_NEAR(volume[c] / std::pow(2.5, 3) / other.volume[c], 1, 0.5) << c;
-    }
-  // On its own grid, each is itself.
-  std::vector<int> all(own.count);
-  std::iota(all.begin(), all.end(), 0);
-  EXPECT_EQ(counterparts(own, fine, own, fine), all);
+  const auto index = [](const Cells& cells, const Vec3i& at) {
+    return (at.z() * cells.size.y() + at.y()) * cells.size.x() + at.x();
+  };
+  const auto cell_of_voxels = [&](const Cells& cells) {
+    std::vector<int> cell(cells.size.prod(), -1);
+    for (const CellRun& run : cells.runs)
+      for (int x = run.x0; x < run.x1; ++x) cell[index(cells, {x, run.y, run.z})] = run.cell;
+    return cell;
+  };
+  const std::vector<int> own_cell = cell_of_voxels(own), other_cell = cell_of_voxels(other);
+  std::map<std::pair<int, int>, std::int64_t> shared;
+  for (int z = 0; z < own.size.z(); ++z)
+    for (int y = 0; y < own.size.y(); ++y)
+      for (int x = 0; x < own.size.x(); ++x) {
+        const Vec3 centre = fine.low() + fine.spacing() * (Vec3(x, y, z) + Vec3::Constant(0.5));
+        const Vec3i there = ((centre - coarse.low()) / coarse.spacing()).array().floor().cast<int>();
+        const Vec3i in = there.cwiseMax(0).cwiseMin(other.size - Vec3i::Ones());
+        const int a = own_cell[index(own, {x, y, z})], b = other_cell[index(other, in)];
+        if (a >= 0 && b >= 0) ++shared[{a, b}];
+      }
+  std::vector<SharedSpace> expected;
+  for (const auto& [pair, voxels] : shared) expected.push_back({pair.first, pair.second, voxels});
+  EXPECT_EQ(shared_space(own, fine, other, coarse), expected);
+
+  // On its own grid, each cell shares all its space with itself.
+  expected.clear();
+  for (int c = 0; c < own.count; ++c) expected.push_back({c, c, own.volume[c]});
+  EXPECT_EQ(shared_space(own, fine, own, fine), expected);
+}
+
+TEST(Cells, AreMarkedWhereMoreThanHalfOfTheirSpaceIs) {
+  const std::vector<SharedSpace> shared = {{0, 0, 4}, {0, 1, 3}, {0, 2, 2}, {1, 1, 5}, {1, 2, 5}, {3, 2, 1}};
+  const std::vector<std::uint8_t> marked = {0, 1, 1};
+  // Cell 0: the largest piece is not marked, most of its space is. Cell 2 shares nothing.
+  EXPECT_EQ(mostly(shared, 4, marked), (std::vector<std::uint8_t>{1, 1, 0, 1}));
+  EXPECT_EQ(mostly(shared, 4, std::vector<std::uint8_t>{1, 1, 0}), (std::vector<std::uint8_t>{1, 0, 0, 0}));
 }
 
 TEST_P(ConsistencyTest, SolidsThatExplainAsMuchAreCounted) {

@@ -236,8 +236,8 @@ std::vector<Rays> trace(const Cells& cells, std::span<const RegionMap> views) {
   return rays;
 }
 
-std::vector<int> counterparts(const Cells& own, const VoxelGrid& own_grid, const Cells& other,
-                              const VoxelGrid& other_grid) {
+std::vector<SharedSpace> shared_space(const Cells& own, const VoxelGrid& own_grid, const Cells& other,
+                                      const VoxelGrid& other_grid) {
   // Along each axis, where the centres of own voxels lie in the other grid; along x, also the first in each of its
   // voxels or beyond.
   std::array<std::vector<int>, 3> places;
@@ -281,15 +281,23 @@ std::vector<int> counterparts(const Cells& own, const VoxelGrid& own_grid, const
   }
   for (int c = 0; c < own.count; ++c) add(c);
 
-  std::vector<Share> best(own.count);
-  for (const auto& [pair, voxels] : shared) {
-    const int there = static_cast<int>(pair & 0xffffffff);
-    Share& share = best[pair >> 32];
-    if (voxels > share.voxels || (voxels == share.voxels && there < share.other)) share = {there, voxels};
-  }
-  std::vector<int> out;
-  out.reserve(own.count);
-  for (const Share& share : best) out.push_back(share.other);
+  std::vector<SharedSpace> out;
+  out.reserve(shared.size());
+  for (const auto& [pair, voxels] : shared)
+    out.push_back({static_cast<int>(pair >> 32), static_cast<int>(pair & 0xffffffff), voxels});
+  std::ranges::sort(out, [](const SharedSpace& p, const SharedSpace& q) {
+    return std::pair(p.own, p.other) < std::pair(q.own, q.other);
+  });
+  return out;
+}
+
+std::vector<std::uint8_t> mostly(std::span<const SharedSpace> shared, int own_count,
+                                 std::span<const std::uint8_t> marked) {
+  std::vector<std::int64_t> more(own_count, 0);  // voxels in marked cells over those in others
+  for (const SharedSpace& share : shared) more[share.own] += marked[share.other] ? share.voxels : -share.voxels;
+  std::vector<std::uint8_t> out;
+  out.reserve(own_count);
+  for (const std::int64_t voxels : more) out.push_back(voxels > 0);
   return out;
 }
 

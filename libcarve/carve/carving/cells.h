@@ -45,9 +45,19 @@ Cells partition(const VoxelGrid& hull, std::span<const RegionMap> views);
 /// What the views' pixels meet.
 std::vector<Rays> trace(const Cells& cells, std::span<const RegionMap> views);
 
-/// Per cell of `own`, the cell of another grid's hull that it shares most space with; -1 if there is none.
-std::vector<int> counterparts(const Cells& own, const VoxelGrid& own_grid, const Cells& other,
-                              const VoxelGrid& other_grid);
+/// Space that a cell shares with one of another grid's hull.
+struct SharedSpace {
+  int own, other;
+  std::int64_t voxels;  // of the own grid
+  bool operator==(const SharedSpace&) const = default;
+};
+/// By own cell, then the other.
+std::vector<SharedSpace> shared_space(const Cells& own, const VoxelGrid& own_grid, const Cells& other,
+                                      const VoxelGrid& other_grid);
+
+/// Per own cell, whether more than half of the space that it shares lies in cells that are marked.
+std::vector<std::uint8_t> mostly(std::span<const SharedSpace> shared, int own_count,
+                                 std::span<const std::uint8_t> marked);
 
 /// Voxel faces between two cells; b = -1: to the outside of the hull. a > b.
 struct CellContact {

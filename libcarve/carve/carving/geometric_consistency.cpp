@@ -20,8 +20,8 @@ struct Cut {
   Cells cells;
   CellProblem hull;  // all of them kept
   VoxelGrid grid;
-  std::vector<int> counterpart;  // which of them a cell of the hull's own grid is part of; -1: none
-  std::vector<int> first;        // which cell of the first grid each of them is part of; none on that grid itself
+  std::vector<SharedSpace> of_own;  // of the cells of the hull's own grid with these
+  std::vector<SharedSpace> first;   // of these with the first grid's; none on that grid itself
 };
 
 struct Input {
@@ -69,16 +69,15 @@ std::vector<Cut> cut_hull(const VoxelGrid& hull, const Cells& own, std::span<con
       Cells cells = other ? partition(*other, cut) : own;
       cells.rays = trace(cells, cut);
       CellProblem problem(cells, cut, options.weights);
-      std::vector<int> counterpart = counterparts(own, hull, cells, other ? *other : hull);
-      cuts[k] =
-          Cut{std::move(cut), std::move(cells), std::move(problem), other ? *other : hull, std::move(counterpart), {}};
+      std::vector<SharedSpace> of_own = shared_space(own, hull, cells, other ? *other : hull);
+      cuts[k] = Cut{std::move(cut), std::move(cells), std::move(problem), other ? *other : hull, std::move(of_own), {}};
     }
   });
   std::vector<Cut> out;
   for (std::optional<Cut>& cut : cuts)
     if (cut) out.push_back(std::move(*cut));
   for (std::size_t k = 1; k < out.size(); ++k)
-    out[k].first = counterparts(out[k].cells, out[k].grid, out[0].cells, out[0].grid);
+    out[k].first = shared_space(out[k].cells, out[k].grid, out[0].cells, out[0].grid);
   return out;
 }
 
@@ -119,13 +118,21 @@ struct Choice {
   bool in_time = true;
 };
 
+std::vector<std::uint8_t> dropped(const CellProblem& problem) {
+  std::vector<std::uint8_t> out;
+  out.reserve(problem.cells());
+  for (const std::uint8_t keep : problem.keep()) out.push_back(!keep);
+  return out;
+}
+
 /// A problem where the other grids begin: what the first one dropped is dropped.
 CellProblem begun(const Cut& cut, const Choice* first) {
   CellProblem problem = cut.hull;
+  if (!first) return problem;
+  const std::vector<std::uint8_t> there = mostly(cut.first, problem.cells(), dropped(first->problem));
   std::vector<int> drop;
-  if (first)
-    for (int c = 0; c < problem.cells(); ++c)
-      if (cut.first[c] >= 0 && !first->problem.keep()[cut.first[c]]) drop.push_back(c);
+  for (int c = 0; c < problem.cells(); ++c)
+    if (there[c]) drop.push_back(c);
   problem.flip(drop);
   return problem;
 }
@@ -141,15 +148,15 @@ Carved by_cells(const Input& in, Decide&& decide) {
   });
 
   ConsistencyResult out{.ran = choices[0]->ran, .cells = choices[0]->problem.cells()};
-  std::vector<int> dropped(in.cells.count, 0);
+  std::vector<int> votes(in.cells.count, 0);
   for (int k = 0; k < count; ++k) {
     out.nodes += choices[k]->nodes;
     out.in_time = out.in_time && choices[k]->in_time;
-    for (int c = 0; c < in.cells.count; ++c)
-      if (const int other = in.cuts[k].counterpart[c]; other >= 0) dropped[c] += !choices[k]->problem.keep()[other];
+    const std::vector<std::uint8_t> drop = mostly(in.cuts[k].of_own, in.cells.count, dropped(choices[k]->problem));
+    for (int c = 0; c < in.cells.count; ++c) votes[c] += drop[c];
   }
   std::vector<std::uint8_t> keep(in.cells.count);
-  for (int c = 0; c < in.cells.count; ++c) keep[c] = 2 * dropped[c] <= count;
+  for (int c = 0; c < in.cells.count; ++c) keep[c] = 2 * votes[c] <= count;
   out.grid = assemble(in.hull.grid, in.cells, keep);
   return {std::move(out), std::move(choices[0]->problem), std::move(keep)};
 }
@@ -160,11 +167,9 @@ void find_others(const Input& in, Carved& carved) {
   const Alternatives others = find_alternatives(*carved.decision, in.options.alternatives);
   carved.result.solids = others.solids;
   carved.result.all_solids = others.all;
-  std::vector<std::uint8_t> differs(carved.decision->cells(), 0), open(in.cells.count, 0);
+  std::vector<std::uint8_t> differs(carved.decision->cells(), 0);
   for (const int c : others.cells) differs[c] = 1;
-  for (int c = 0; c < in.cells.count; ++c)
-    if (const int other = in.cuts[0].counterpart[c]; other >= 0) open[c] = differs[other];
-  carved.result.open_cells = boxes_of(in.cells, open, carved.keep);
+  carved.result.open_cells = boxes_of(in.cells, mostly(in.cuts[0].of_own, in.cells.count, differs), carved.keep);
 }
 
 Choice in_one_pass(const Cut& cut, const Choice* first) {
