@@ -107,8 +107,7 @@ BoxWorld walled_stairs_world(int steps) {
 BoxWorld random_pockets(unsigned seed) {
   std::mt19937 random(seed);
   const auto uniform = [&](int low, int high) { return low + static_cast<int>(random() % (high - low + 1)); };
-  // A tray seen from the top: rows of pockets divided by ribs that are lower or higher than the rim.
-  BoxWorld world{{36, 24, 24}, {{{0, 0, 0}, {36, uniform(3, 8), 24}}}};
+  BoxWorld world{{36, 24, 24}, {{{0, 0, 0}, {36, uniform(3, 8), 24}}, {{0, 0, 0}, {36, 24, 3}}}};
   for (const int x : {0, 33}) world.parts.push_back({{x, 0, 0}, {x + 3, 24, 24}});
   const int ribs = uniform(0, 2);
   for (int k = 0; k < ribs; ++k) {

@@ -30,7 +30,7 @@ ViewSet views_of(const BoxWorld& world, std::span<const View> views, const BoxDr
 /// A couch, an armchair without a back wall's colour, and stairs between walls, in units.
 BoxWorld couch();
 BoxWorld walled_stairs_world(int steps);
-/// A box with up to three pockets from the front that each end in the back half, away from each other.
+/// A tray without a front wall, divided by up to two ribs that are lower than its walls: each silhouette is full.
 BoxWorld random_pockets(unsigned seed);
 
 }  // namespace carve

@@ -15,12 +15,12 @@
 #include "carve/carving/scale_axis.h"
 #include "carve/core/options.h"
 #include "carve/core/parallel.h"
+#include "carve/grid/cut_edges.h"
 
 namespace carve {
 namespace {
 
 constexpr float kTolerance = 1e-4f;  // a mirrored solid gives the mirrored result
-constexpr float kClearance = 0.02f;  // voxels between a crossing and the centres
 
 /// How far out voxels lie: 1 on the rounded surface. Layer z: values[y * nx + x].
 using Layer = std::function<void(int z, std::vector<float>& values)>;
@@ -148,87 +148,37 @@ float crossing(float inside, float outside, float level) {
   return std::clamp(share, kClearance, 1 - kClearance);
 }
 
-/// The edges between voxels that stay and voxels of the solid that do not.
-class CutEdges {
+/// Where the rounded surface crosses the edges between voxels that stay and voxels of the solid that do not.
+class RoundedPlaces {
  public:
-  CutEdges(const VoxelGrid& solid, const VoxelGrid& result, std::span<const Rounding> steps)
-      : solid_(solid), result_(result), steps_(steps), rows_(solid.size().z()) {
-    parallel_ranges(0, solid.size().z(), 8, [&](int first, int last) {
-      Values values(steps.size()), before(steps.size());
-      for (std::size_t k = 0; first > 0 && k < steps.size(); ++k) steps[k].layer(first - 1, before[k]);
-      for (int z = first; z < last; ++z) {
-        for (std::size_t k = 0; k < steps.size(); ++k) steps[k].layer(z, values[k]);
-        for (int y = 0; y < solid.size().y(); ++y) find(y, z, values, before);
-        values.swap(before);
-      }
-    });
+  RoundedPlaces(std::span<const Rounding> steps, const Vec3i& size, int z)
+      : steps_(steps), size_(size), values_(steps.size()), before_(steps.size()) {
+    if (z > 0) enter(z - 1);
   }
 
-  AxisCrossings collect() const {
-    AxisCrossings result;
-    for (int axis = 0; axis < 3; ++axis) {
-      EdgeCrossings& all = result[axis];
-      all.size = solid_.size();
-      all.first = {0};
-      for (const auto& rows : rows_) {
-        const std::uint32_t begin = static_cast<std::uint32_t>(all.entries.size());
-        for (const std::uint32_t end : rows[axis].ends) all.first.push_back(begin + end);
-        all.entries.insert(all.entries.end(), rows[axis].entries.begin(), rows[axis].entries.end());
-      }
+  void enter(int z) {
+    values_.swap(before_);
+    for (std::size_t k = 0; k < steps_.size(); ++k) steps_[k].layer(z, values_[k]);
+  }
+
+  float operator()(int axis, const Vec3i& upper, bool upper_inside) const {
+    const Vec3i in = upper_inside ? upper : Vec3i(upper - Vec3i::Unit(axis));
+    const std::size_t at = static_cast<std::size_t>(upper.y()) * size_.x() + upper.x();
+    float nearest = 0;
+    for (std::size_t k = 0; k < steps_.size(); ++k) {
+      const float high = values_[k][at];
+      const float low = axis == 2 ? before_[k][at] : values_[k][at - (axis == 0 ? 1 : size_.x())];
+      const float level = steps_[k].minima.level(in.x(), in.y(), in.z());
+      const float share = upper_inside ? crossing(high, low, level) : crossing(low, high, level);
+      if (share > 0 && (nearest == 0 || share < nearest)) nearest = share;
     }
-    return result;
+    return nearest;
   }
 
  private:
-  using Values = std::vector<std::vector<float>>;  // of a layer, by each step
-  struct Rows {
-    std::vector<std::uint32_t> ends;
-    std::vector<EdgeCrossings::Entry> entries;
-  };
-
-  void find(int y, int z, const Values& values, const Values& before) {
-    const int nx = solid_.size().x();
-    const std::size_t row = static_cast<std::size_t>(y) * nx;
-    for (int axis = 0; axis < 3; ++axis) {
-      Rows& rows = rows_[z][axis];
-      const Vec3i down = Vec3i::Unit(axis);
-      if (axis == 0 || (axis == 1 ? y : z) > 0)
-        each_cut(y, z, axis, [&](int x) {
-          const bool inside = result_(x, y, z);  // the upper one
-          const Vec3i in = inside ? Vec3i(x, y, z) : Vec3i(Vec3i(x, y, z) - down);
-          float nearest = 0;
-          for (std::size_t k = 0; k < steps_.size(); ++k) {
-            const float upper = values[k][row + x];
-            const float lower = axis == 2 ? before[k][row + x] : values[k][row + x - (axis == 0 ? 1 : nx)];
-            const float level = steps_[k].minima.level(in.x(), in.y(), in.z());
-            const float share = inside ? crossing(upper, lower, level) : crossing(lower, upper, level);
-            if (share > 0 && (nearest == 0 || share < nearest)) nearest = share;
-          }
-          if (nearest > 0) rows.entries.push_back({x, inside ? -nearest : nearest});
-        });
-      rows.ends.push_back(static_cast<std::uint32_t>(rows.entries.size()));
-    }
-  }
-
-  /// Calls use(x) for the edges that end in row (y, z), lie in the solid and are cut by the result's surface.
-  template <class Use>
-  void each_cut(int y, int z, int axis, Use&& use) const {
-    const int dy = axis == 1, dz = axis == 2;
-    const std::uint64_t *kept = result_.row(y, z), *below = result_.row(y - dy, z - dz);
-    const std::uint64_t *solid = solid_.row(y, z), *under = solid_.row(y - dy, z - dz);
-    for (int w = 0; w < solid_.words_per_row(); ++w) {
-      std::uint64_t cut = kept[w] ^ below[w], both = solid[w] & under[w];
-      if (axis == 0) {
-        cut = kept[w] ^ (kept[w] << 1 | (w > 0 ? kept[w - 1] >> 63 : 0));
-        both = solid[w] & (solid[w] << 1 | (w > 0 ? solid[w - 1] >> 63 : 0));
-      }
-      for (std::uint64_t rest = cut & both; rest; rest &= rest - 1) use(64 * w + std::countr_zero(rest));
-    }
-  }
-
-  const VoxelGrid &solid_, &result_;
   std::span<const Rounding> steps_;
-  std::vector<std::array<Rows, 3>> rows_;  // by z
+  Vec3i size_;
+  std::vector<std::vector<float>> values_, before_;  // of a layer, by each step
 };
 
 }  // namespace
@@ -253,7 +203,7 @@ Refinement refine_convex(const VoxelGrid& solid, const ViewSet& views, const Con
     balls.emplace(result, options.scale);
     step([&balls](int z, std::vector<float>& values) { balls->layer(z, values); });
   }
-  AxisCrossings crossings = CutEdges(solid, result, steps).collect();
+  AxisCrossings crossings = cut_edges(solid, result, [&](int z) { return RoundedPlaces(steps, solid.size(), z); });
   return {std::move(result), std::move(crossings)};
 }
 

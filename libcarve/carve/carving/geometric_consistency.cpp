@@ -7,6 +7,7 @@
 #include "carve/carving/cell_alternatives.h"
 #include "carve/carving/cell_solver.h"
 #include "carve/carving/silhouette_cover.h"
+#include "carve/carving/stroke_crossings.h"
 #include "carve/core/error.h"
 #include "carve/core/options.h"
 #include "carve/core/parallel.h"
@@ -275,6 +276,9 @@ ConsistencyResult apply_consistency(const Carving& hull, const ViewSet& views, c
     }
   }
   find_others(in, carved);
+  std::vector<RegionBorders> borders;
+  for (std::size_t v = 0; v < drawings.size(); ++v) borders.push_back(drawings[v].borders(regions[v], hull.grid));
+  out.crossings = stroke_crossings(hull.grid, out.grid, borders);
   out.regions = result.regions;
   out.hull_score = result.hull_score;
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

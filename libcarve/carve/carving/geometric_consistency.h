@@ -7,6 +7,7 @@
 #include "carve/carving/cell_problem.h"
 #include "carve/carving/stroke_score.h"
 #include "carve/core/monitor.h"
+#include "carve/grid/edge_crossings.h"
 
 namespace carve {
 
@@ -62,6 +63,7 @@ struct OpenCell {
 
 struct ConsistencyResult {
   VoxelGrid grid = {};
+  AxisCrossings crossings = {};         // of the surface that was carved into the hull (stroke_crossings)
   Consistency ran = Consistency::none;  // none: nothing explained the drawings better than the hull
   int regions = 0, cells = 0;
   std::int64_t nodes = 0;

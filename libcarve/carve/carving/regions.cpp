@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "carve/carving/colour_segments.h"
 #include "carve/carving/nearest.h"
 #include "carve/carving/region_strokes.h"
 #include "carve/carving/stroke_ends.h"
+#include "carve/grid/edge_crossings.h"
 #include "carve/grid/shadow.h"
 
 namespace carve {
@@ -65,6 +67,24 @@ class CutDrawing::Work {
     return out;
   }
 
+  RegionBorders borders(const RegionMap& map, const VoxelGrid& hull) const {
+    const int w = edge_.width, h = edge_.height, width = map.region.width, height = map.region.height;
+    const std::vector<double> column = columns(hull), row = rows(hull);
+    RegionBorders out{view_.view, Raster<float>(width, height, 0), Raster<float>(width, height, 0)};
+    const auto parted = [&](int i, int j, int m, int n) {
+      return m < width && n < height && map.region(i, j) >= 0 && map.region(m, n) >= 0 &&
+             map.region(i, j) != map.region(m, n);
+    };
+    for (int j = 0; j < height; ++j)
+      for (int i = 0; i < width; ++i) {
+        if (parted(i, j, i + 1, j))
+          out.right(i, j) = border_between({pixel_at(row[j], h) * w, 1, w}, column[i], column[i + 1]);
+        if (parted(i, j, i, j + 1))
+          out.below(i, j) = border_between({pixel_at(column[i], w), w, h}, row[j], row[j + 1]);
+      }
+    return out;
+  }
+
  private:
   /// The window's pixel at each grid pixel's centre, and the surface pixel that stands for it; -1: none.
   struct Sample {
@@ -120,23 +140,84 @@ class CutDrawing::Work {
     return surface_.pixels[pixel] ? pixel : nearest_surface_(pixel % edge_.width, pixel / edge_.width);
   }
 
+  /// Columns (rows) of the grid pixels' centres in the window.
+  std::vector<double> columns(const VoxelGrid& hull) const {
+    const ShadowLayout layout(hull.size(), view_.view);
+    const int axis = layout.frame.right.axis;
+    std::vector<double> out(layout.width);
+    for (int i = 0; i < layout.width; ++i)
+      out[i] = view_.column(hull.low()[axis] + (layout.right_index(i) + 0.5) * hull.spacing()) - window_.x0;
+    return out;
+  }
+  std::vector<double> rows(const VoxelGrid& hull) const {
+    const ShadowLayout layout(hull.size(), view_.view);
+    const int axis = layout.frame.up.axis;
+    std::vector<double> out(layout.height);
+    for (int j = 0; j < layout.height; ++j)
+      out[j] = view_.row(hull.low()[axis] + (layout.up_index(j) + 0.5) * hull.spacing()) - window_.y0;
+    return out;
+  }
+  /// The pixel at a place along a line of `count`.
+  static int pixel_at(double place, int count) { return std::clamp(static_cast<int>(std::floor(place)), 0, count - 1); }
+
   Sample sample(const Mask& seen, const VoxelGrid& hull) const {
     Sample out{Raster<int>(seen.width, seen.height, -1), Raster<int>(seen.width, seen.height, -1)};
-    const Frame f = frame(view_.view);
-    const auto coordinate = [&](SignedAxis axis, int i, int n) {
-      const int index = axis.sign > 0 ? i : n - 1 - i;
-      return hull.low()[axis.axis] + (index + 0.5) * hull.spacing();
-    };
+    const std::vector<double> column = columns(hull), row = rows(hull);
     for (int j = 0; j < seen.height; ++j)
       for (int i = 0; i < seen.width; ++i) {
         if (!seen(i, j)) continue;
-        const double a = coordinate(f.right, i, seen.width), b = coordinate(f.up, seen.height - 1 - j, seen.height);
-        const int x = std::clamp(static_cast<int>(std::floor(view_.column(a))) - window_.x0, 0, edge_.width - 1);
-        const int y = std::clamp(static_cast<int>(std::floor(view_.row(b))) - window_.y0, 0, edge_.height - 1);
-        out.pixel(i, j) = y * edge_.width + x;
+        out.pixel(i, j) = pixel_at(row[j], edge_.height) * edge_.width + pixel_at(column[i], edge_.width);
         out.surface(i, j) = labelled(out.pixel(i, j));
       }
     return out;
+  }
+
+  /// A row or a column of the window.
+  struct Line {
+    int first, step, count;
+    int operator()(int k) const { return first + step * k; }
+  };
+
+  /// Where on the way along a line from the centre of one grid pixel to the next its segment ends and the other's
+  /// begins, as a share of the way; 0 if others lie between them.
+  float border_between(const Line& line, double from, double to) const {
+    const int a = pixel_at(from, line.count), b = pixel_at(to, line.count), step = b > a ? 1 : -1;
+    const auto segment = [&](int k) {
+      const int at = labelled(line(k));
+      return at < 0 ? -1 : segment_.pixels[at];
+    };
+    const int here = segment(a), there = segment(b);
+    int k = a;
+    while (k != b && segment(k) == here) k += step;
+    if (here == there || segment(k) != there) return 0;
+    const double place = stroke_middle(line, k - step, k).value_or(std::max(k, k - step));
+    return std::clamp(static_cast<float>((place - from) / (to - from)), kClearance, 1 - kClearance);
+  }
+
+  /// The middle of the ink of the stroke that one of two pixels of a line belongs to; none if there is no stroke, or
+  /// one that runs along the line.
+  std::optional<double> stroke_middle(const Line& line, int p, int q) const {
+    const auto drawn = [&](int k) { return k >= 0 && k < line.count && edge_.pixels[line(k)]; };
+    if (!drawn(p) && !drawn(q)) return {};
+    const int longest = static_cast<int>(2 * stroke_) + 2;  // of a stroke across the line, or aslant
+    int first = drawn(p) ? p : q, last = first;
+    while (drawn(first - 1) && last - first < longest) --first;
+    while (drawn(last + 1) && last - first < longest) ++last;
+    if (last - first >= longest) return {};
+    const auto brightness = [&](int k) {
+      const Rgba& c = window_.colour.pixels[line(std::clamp(k, 0, line.count - 1))];
+      return (c.r + c.g + c.b) / 3.0;
+    };
+    constexpr int kRim = 1;  // pixels that are a stroke's in part only
+    const double before = brightness(first - kRim - 1), after = brightness(last + kRim + 1);
+    double ink = 0, moment = 0;
+    for (int k = first - kRim; k <= last + kRim; ++k) {
+      const double paper = 2 * k < first + last ? before : after;
+      const double share = std::max(0.0, paper - brightness(k));
+      ink += share, moment += share * (k + 0.5);
+    }
+    constexpr double kFaint = 32;  // a stroke on a surface as dark
+    return ink > kFaint ? std::optional(moment / ink) : std::nullopt;
   }
 
   /// \return each segment's region
@@ -237,6 +318,10 @@ CutDrawing::CutDrawing(const AlignedView& view, double longest, const RegionOpti
     : work_(std::make_shared<const Work>(view, longest, options)) {}
 
 RegionMap CutDrawing::on(const VoxelGrid& hull) const { return work_->on(hull); }
+
+RegionBorders CutDrawing::borders(const RegionMap& map, const VoxelGrid& hull) const {
+  return work_->borders(map, hull);
+}
 
 RegionMap find_regions(const AlignedView& view, const VoxelGrid& hull, const RegionOptions& options) {
   return CutDrawing(view, hull.size().maxCoeff() * hull.spacing(), options).on(hull);

@@ -44,6 +44,14 @@ struct RegionMap {
   std::vector<Vec3> colour;     // mean sRGB per region, 0..255
 };
 
+/// Where the borders between regions lie between a grid pixel's centre and its neighbour's on the right (below), in (0,
+/// 1) of the way: in the middle of the stroke between them, to a fraction of a pixel, or where the colour changes. 0
+/// where both are of one region, or others lie between them. Laid out as RegionMap.
+struct RegionBorders {
+  View view;
+  Raster<float> right, below;
+};
+
 /// A drawing cut into regions once, to be sampled on several grids. \pre the view outlives it
 class CutDrawing {
  public:
@@ -51,6 +59,8 @@ class CutDrawing {
   CutDrawing(const AlignedView& view, double longest, const RegionOptions& options = {});
   /// \param hull  its shadow says which pixels are the object
   RegionMap on(const VoxelGrid& hull) const;
+  /// \param map  of the same hull
+  RegionBorders borders(const RegionMap& map, const VoxelGrid& hull) const;
 
  private:
   class Work;

@@ -8,6 +8,8 @@
 
 namespace carve {
 
+inline constexpr float kClearance = 0.02F;  // voxels between a crossing and the centres: no triangle degenerates
+
 /// Where a surface crosses the grid edges along one axis, where that is known. An edge is named by its upper centre
 /// (x, y, z). The value is as in surface/crossings.h: voxels from the inside centre to the surface, in (0, 1), positive
 /// if that is the lower centre, negative if it is the upper one; 0 where nothing is known.

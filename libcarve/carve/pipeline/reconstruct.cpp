@@ -52,6 +52,7 @@ Mesh voxel_surface(const Carving& hull, Reconstruction& result, const PipelineOp
   const Crossings crossings = stage("intersections", [&] {
     if (!options.intersections) return Crossings{};
     Crossings crossings = contour_crossings(result.views, result.grid);
+    if (options.intersections_strokes) crossings.strokes = std::exchange(result.consistency.crossings, {});
     crossings.edges = std::move(refined.crossings);
     return crossings;
   });

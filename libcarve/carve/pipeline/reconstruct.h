@@ -23,6 +23,7 @@ namespace carve {
 struct PipelineOptions {
   CarveOptions carve;
   bool intersections = true;
+  bool intersections_strokes = true;
   bool intersections_sharp = true;
   HullMethod hull = HullMethod::none;
   ContourOptions contour;
@@ -39,6 +40,8 @@ struct PipelineOptions {
 template <class Visitor>
 void visit_fields(PipelineOptions& o, Visitor&& field) {
   field("intersections", o.intersections, "vertices at the exact crossing of grid line and drawn contour");
+  field("intersections_strokes", o.intersections_strokes,
+        "with intersections: what was carved along strokes ends in their middle instead of at voxels' faces");
   field("intersections_sharp", o.intersections_sharp,
         "with intersections: edges and corners at their place instead of cut off");
   field("hull", o.hull, "an exact polyhedral hull of the contours in place of voxels; it is not smoothed");
@@ -57,7 +60,7 @@ struct StageTime {
 struct Reconstruction {
   Mesh mesh;       // solid (mesh/topology.h), object units: longest side 1, centred on x and z, standing on y = 0
   VoxelGrid grid;  // the solid the mesh was made from; of an exact hull, its voxels
-  ConsistencyResult consistency;  // its grid is empty: it became `grid`
+  ConsistencyResult consistency;  // its grid is empty: it became `grid`; so are its crossings
   std::vector<RefinementStep> refinement;
   Topology topology;
   TexturedMesh textured;  // the mesh again with its texture; empty if there was to be none

@@ -12,8 +12,6 @@
 namespace carve {
 namespace {
 
-constexpr double kClearance = 0.02;  // voxels between a crossing and the centres
-
 /// What two views of one plane say together: the nearer of two crossings; nothing if they contradict each other.
 float nearer(float a, float b) {
   if (a == 0) return b;
@@ -84,7 +82,7 @@ class PlaneView {
                  to = pixel(along_right, lower_inside ? high : low);
     const double left =
         along_right ? outline_.leave_along_row(from, to, line) : outline_.leave_along_column(from, to, line);
-    return static_cast<float>(std::clamp((left - from) / (to - from), kClearance, 1 - kClearance));
+    return std::clamp(static_cast<float>((left - from) / (to - from)), kClearance, 1 - kClearance);
   }
 
   /// Pixel coordinate of a voxel's centre, by its index along the view's right (or up) axis.

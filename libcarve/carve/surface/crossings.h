@@ -18,13 +18,14 @@ struct PlaneCrossings {
 /// One plane for front and back (xy), top and bottom (xz), side and left (yz). Empty planes see no outline.
 struct Crossings {
   PlaneCrossings xy, xz, yz;
-  AxisCrossings edges = {};  // of surfaces that no outline shows; the nearer of the two is taken
+  AxisCrossings edges = {};    // of surfaces that no outline shows; the nearest of all is taken
+  AxisCrossings strokes = {};  // of surfaces that were carved along strokes: these stay flat and sharp
 };
 
 /// Marching intersections (thesis 3.1.4) \cite rocchini_2001: the exact crossing of each grid line with the drawn
-/// outline (image/outline.h), the first one seen from the inside centre. Kept off the centres by 0.02 voxels, so that
-/// no triangle degenerates. Inside is taken at the voxels' centres: grids carved with Patch::any have surfaces beyond
-/// these outlines, and there the crossings say nothing.
+/// outline (image/outline.h), the first one seen from the inside centre, at least kClearance off the centres. Inside is
+/// taken at the voxels' centres: grids carved with Patch::any have surfaces beyond these outlines, and there the
+/// crossings say nothing.
 Crossings contour_crossings(const ViewSet& views, const VoxelGrid& grid);
 
 }  // namespace carve

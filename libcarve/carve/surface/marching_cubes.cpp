@@ -85,11 +85,11 @@ void find_active(const std::uint64_t* const corners[4], int words_per_row, int w
 }
 
 /// Where on an edge its vertex lies, from the lower centre: at the nearest crossing seen from the inside one.
-double share(bool upper_inside, float a, float b, float c) {
+double share(bool upper_inside, std::array<float, 4> crossings) {
   const float sign = upper_inside ? -1.f : 1.f;
-  const float from_a = sign * a > 0 ? sign * a : 1.f, from_b = sign * b > 0 ? sign * b : 1.f;
-  const float from_c = sign * c > 0 ? sign * c : 1.f;
-  const float nearest = std::min({from_a, from_b, from_c});
+  float nearest = 1;
+  for (const float crossing : crossings)
+    if (const float distance = sign * crossing; distance > 0) nearest = std::min(nearest, distance);
   const double distance = nearest < 1 ? nearest : 0.5f;
   return upper_inside ? 1 - distance : distance;
 }
@@ -98,7 +98,7 @@ double share(bool upper_inside, float a, float b, float c) {
 class RowPlaces {
  public:
   RowPlaces(const VoxelGrid& grid, const Crossings& crossings, const std::vector<float>& nothing, int cy, int cz)
-      : edges_(crossings.edges), spacing_(grid.spacing()), low_(grid.low()), cy_(cy), cz_(cz) {
+      : crossings_(crossings), spacing_(grid.spacing()), low_(grid.low()), cy_(cy), cz_(cz) {
     const auto row = [&](const Raster<float>& plane, int j) {
       return plane.empty() || j >= plane.height ? nothing.data() : &plane(0, j);
     };
@@ -111,21 +111,22 @@ class RowPlaces {
   }
 
   Vec3 x(int cx, bool upper) const {
-    return place(cx + share(upper, along_x_[0][cx], along_x_[1][cx], edge(0, cx)) - 1, cy_, cz_);
+    return place(cx + share(upper, {along_x_[0][cx], along_x_[1][cx], rounded(0, cx), stroke(0, cx)}) - 1, cy_, cz_);
   }
   Vec3 y(int cx, bool upper) const {
-    return place(cx, cy_ + share(upper, along_y_[cx], side_y_, edge(1, cx)) - 1, cz_);
+    return place(cx, cy_ + share(upper, {along_y_[cx], side_y_, rounded(1, cx), stroke(1, cx)}) - 1, cz_);
   }
   Vec3 z(int cx, bool upper) const {
-    return place(cx, cy_, cz_ + share(upper, along_z_[cx], side_z_, edge(2, cx)) - 1);
+    return place(cx, cy_, cz_ + share(upper, {along_z_[cx], side_z_, rounded(2, cx), stroke(2, cx)}) - 1);
   }
 
  private:
   Vec3 place(double x, double y, double z) const {
     return {low_.x() + spacing_ * (x + 0.5), low_.y() + spacing_ * (y + 0.5), low_.z() + spacing_ * (z + 0.5)};
   }
-  float edge(int axis, int cx) const { return edges_[axis](cx, cy_, cz_); }
-  const AxisCrossings& edges_;
+  float rounded(int axis, int cx) const { return crossings_.edges[axis](cx, cy_, cz_); }
+  float stroke(int axis, int cx) const { return crossings_.strokes[axis](cx, cy_, cz_); }
+  const Crossings& crossings_;
   double spacing_;
   Vec3 low_;
   int cy_, cz_;
@@ -270,9 +271,10 @@ Mesh marching_cubes(const VoxelGrid& grid, const Crossings& crossings) {
   check_size(crossings.xy, n.x(), n.y());
   check_size(crossings.xz, n.x(), n.z());
   check_size(crossings.yz, n.y(), n.z());
-  for (const EdgeCrossings& edges : crossings.edges)
-    if (!edges.first.empty() && edges.size != n)
-      throw std::invalid_argument("crossings must be of the grid that is meshed");
+  for (const AxisCrossings& all : {std::cref(crossings.edges), std::cref(crossings.strokes)})
+    for (const EdgeCrossings& edges : all)
+      if (!edges.first.empty() && edges.size != n)
+        throw std::invalid_argument("crossings must be of the grid that is meshed");
   return MarchingCubes(grid, crossings).mesh();
 }
 
