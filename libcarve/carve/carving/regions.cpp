@@ -140,22 +140,24 @@ class CutDrawing::Work {
     return surface_.pixels[pixel] ? pixel : nearest_surface_(pixel % edge_.width, pixel / edge_.width);
   }
 
-  /// Columns (rows) of the grid pixels' centres in the window.
+  /// Columns of the grid pixels' centres in the window.
   std::vector<double> columns(const VoxelGrid& hull) const {
     const ShadowLayout layout(hull.size(), view_.view);
-    const int axis = layout.frame.right.axis;
     std::vector<double> out(layout.width);
     for (int i = 0; i < layout.width; ++i)
-      out[i] = view_.column(hull.low()[axis] + (layout.right_index(i) + 0.5) * hull.spacing()) - window_.x0;
+      out[i] = view_.column(centre(hull, layout.frame.right.axis, layout.right_index(i))) - window_.x0;
     return out;
   }
+  /// Their rows.
   std::vector<double> rows(const VoxelGrid& hull) const {
     const ShadowLayout layout(hull.size(), view_.view);
-    const int axis = layout.frame.up.axis;
     std::vector<double> out(layout.height);
     for (int j = 0; j < layout.height; ++j)
-      out[j] = view_.row(hull.low()[axis] + (layout.up_index(j) + 0.5) * hull.spacing()) - window_.y0;
+      out[j] = view_.row(centre(hull, layout.frame.up.axis, layout.up_index(j))) - window_.y0;
     return out;
+  }
+  static double centre(const VoxelGrid& hull, int axis, int index) {
+    return hull.low()[axis] + (index + 0.5) * hull.spacing();
   }
   /// The pixel at a place along a line of `count`.
   static int pixel_at(double place, int count) { return std::clamp(static_cast<int>(std::floor(place)), 0, count - 1); }
