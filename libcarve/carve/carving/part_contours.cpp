@@ -181,7 +181,8 @@ double grown(std::span<const Sections> cuts, std::span<const std::vector<Drift>>
 }
 
 double superellipse_fill(double exponent) {
-  return std::exp(2 * std::lgamma(1 + 1 / exponent) - std::lgamma(1 + 2 / exponent));
+  const double quarter = std::tgamma(1 + 1 / exponent);  // lgamma writes a global, and threads come here at once
+  return quarter * quarter / std::tgamma(1 + 2 / exponent);
 }
 
 std::vector<PartContour> part_contours(const Sections& all, int longest, const ConvexOptions& options, bool built) {
