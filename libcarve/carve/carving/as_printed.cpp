@@ -40,8 +40,7 @@ class Printed {
 
   bool visible(std::size_t v, const Vec3i& at) const {
     const ShadowLayout& l = layouts_[v];
-    const int index = at[l.frame.toward.axis];
-    const int behind_face = l.frame.toward.sign > 0 ? l.depth - 1 - index : index;
+    const int behind_face = l.toward_index(at[l.frame.toward.axis]);
     return depths_[v](l.right_index(at[l.frame.right.axis]), l.up_index(at[l.frame.up.axis])) == behind_face;
   }
 

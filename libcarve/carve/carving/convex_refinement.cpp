@@ -1,7 +1,6 @@
 #include "carve/carving/convex_refinement.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <functional>

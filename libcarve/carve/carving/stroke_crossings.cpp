@@ -30,9 +30,7 @@ class BorderView {
   /// Nothing hides the voxel.
   bool sees(const Vec3i& at) const {
     const auto [i, j] = pixel(at);
-    const SignedAxis toward = layout_.frame.toward;
-    const int before = toward.sign > 0 ? layout_.depth - 1 - at[toward.axis] : at[toward.axis];
-    return depth_(i, j) < 0 || before < depth_(i, j);
+    return depth_(i, j) < 0 || layout_.toward_index(at[layout_.frame.toward.axis]) < depth_(i, j);
   }
 
  private:

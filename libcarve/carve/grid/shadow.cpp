@@ -26,7 +26,7 @@ void bits_depth(const VoxelGrid& grid, const ShadowLayout& layout, int j, int* p
   const int words = grid.words_per_row(), up = layout.up_index(j);
   std::vector<std::uint64_t> seen(words, 0);
   for (int d = 0; d < layout.depth; ++d) {
-    const int layer = layout.frame.toward.sign > 0 ? layout.depth - 1 - d : d;
+    const int layer = layout.toward_index(d);
     const std::uint64_t* row = layout.frame.toward.axis == 2 ? grid.row(up, layer) : grid.row(layer, up);
     for (int w = 0; w < words; ++w) {
       for (std::uint64_t fresh = row[w] & ~seen[w]; fresh; fresh &= fresh - 1)

@@ -5,7 +5,7 @@
 
 namespace carve {
 
-/// Which voxels lie behind a pixel of a view at the grid's resolution.
+/// Which voxels lie behind a pixel of a view at the grid's resolution, layer by layer from the viewer's side.
 struct ShadowLayout {
   Frame frame;
   int width = 0, height = 0, depth = 0;  // voxels along the view's right, up and toward axes
@@ -15,8 +15,9 @@ struct ShadowLayout {
         width(size[frame.right.axis]),
         height(size[frame.up.axis]),
         depth(size[frame.toward.axis]) {}
-  int right_index(int i) const { return frame.right.sign > 0 ? i : width - 1 - i; }  // pixel column <-> voxel index
-  int up_index(int j) const { return frame.up.sign > 0 ? height - 1 - j : j; }       // pixel row <-> voxel index
+  int right_index(int i) const { return frame.right.sign > 0 ? i : width - 1 - i; }    // pixel column <-> voxel index
+  int up_index(int j) const { return frame.up.sign > 0 ? height - 1 - j : j; }         // pixel row <-> voxel index
+  int toward_index(int d) const { return frame.toward.sign > 0 ? depth - 1 - d : d; }  // layer <-> voxel index
 };
 
 /// The grid seen along a view: one pixel a voxel column, image right and up as in the view's frame (row 0 on top).

@@ -1,6 +1,7 @@
 #include "carve/surface/marching_cubes.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
 #include <limits>
@@ -271,8 +272,8 @@ Mesh marching_cubes(const VoxelGrid& grid, const Crossings& crossings) {
   check_size(crossings.xy, n.x(), n.y());
   check_size(crossings.xz, n.x(), n.z());
   check_size(crossings.yz, n.y(), n.z());
-  for (const AxisCrossings& all : {std::cref(crossings.edges), std::cref(crossings.strokes)})
-    for (const EdgeCrossings& edges : all)
+  for (const AxisCrossings* all : {&crossings.edges, &crossings.strokes})
+    for (const EdgeCrossings& edges : *all)
       if (!edges.first.empty() && edges.size != n)
         throw std::invalid_argument("crossings must be of the grid that is meshed");
   return MarchingCubes(grid, crossings).mesh();
